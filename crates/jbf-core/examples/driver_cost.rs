@@ -1,6 +1,9 @@
-//! Cost of an accurate trajectory: eight two-way motions, w = 0.0055 to 2 rad/s, two periods
-//! each with 2000 samples in the second, for both models. The error is the largest over all
-//! samples against the same run at a tolerance of 1e-12; times are of one thread.
+//! Cost and error of trajectories with a given accuracy.
+//!
+//! There are eight motions in both directions, w = 0.0055 to 2 rad/s, with two periods each and
+//! 2000 samples in the second period, for the models with and without inertia. The error is the
+//! largest difference of a sample from the same trajectory at a tolerance of 1e-12. Times are those
+//! of one thread.
 //!
 //! `cargo run --release -p jbf-core --example driver_cost`
 
@@ -14,7 +17,8 @@ use std::time::Instant;
 const OMEGAS_RAD_S: [f64; 8] = [0.0055, 0.0225, 0.045, 0.1, 0.25, 0.5, 1.0, 2.0];
 const SAMPLES: usize = 2000;
 
-/// Computes the friction of all runs into `out`, one run after another; returns their total cost.
+/// Computes the friction coefficients of all runs into `out`, one run after another, and returns
+/// the total cost.
 fn all<F: Film<f64, N>, const N: usize>(
     film: &F,
     tolerance: f64,

@@ -1,5 +1,7 @@
-//! Accuracy of explicit Euler, the thesis's stepper, at each loop period: friction
-//! along a reversal of U = 0.127 sin(2 t), against a trajectory accurate to 1e-9.
+//! Accuracy of the explicit Euler method of Cohn (1998) at several loop periods.
+//!
+//! The friction along a reversal of U = 0.127 sin(2 t) is compared with a trajectory accurate to
+//! 1e-9.
 //!
 //! `cargo run --release -p jbf-core --example euler_loop`
 

@@ -1,5 +1,7 @@
-//! Prints one period of friction against speed, U = 0.127 sin(t): the friction on the way up
-//! is not the friction on the way down, and the peak comes after the reversal.
+//! Prints one period of friction against speed, U = 0.127 sin(t).
+//!
+//! The friction at rising speed differs from that at falling speed, and the peak follows the
+//! reversal.
 //!
 //! `cargo run -p jbf-core --example hysteresis_loop`
 
@@ -11,7 +13,7 @@ use std::f64::consts::TAU;
 const LOAD_N: f64 = 104.0;
 const AMPLITUDE_M_S: f64 = 0.127;
 
-/// The imposed motion; angle and acceleration follow from the speed.
+/// Imposed motion at a time; angle and acceleration follow from the speed.
 fn motion(time_s: f64) -> Motion<f64> {
     Motion::at_rest(LOAD_N)
         .with_time_s(time_s)

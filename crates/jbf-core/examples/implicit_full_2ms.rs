@@ -1,6 +1,8 @@
-//! The full model, inertia included, in a 2 ms loop: an explicit step would have to be shorter
-//! than its fastest time constant, ten nanoseconds at very low speed. Prints friction next to a
-//! trajectory accurate to 1e-8, and the time per step.
+//! Steps the model with the inertia of the journal in a control loop of 2 ms.
+//!
+//! An explicit step would have to be shorter than the fastest time constant of the model, ten
+//! nanoseconds at very low speed. The example prints the friction, that of a trajectory accurate to
+//! 1e-8, and the time per step.
 //!
 //! `cargo run --release -p jbf-core --example implicit_full_2ms`
 
@@ -15,7 +17,7 @@ use std::time::Instant;
 const DT_S: f64 = 0.002;
 const STEPS: usize = 3140;
 
-/// Friction after each step, and time per step, ns.
+/// Returns the friction coefficient after each step, and the mean time per step, ns.
 fn run(law: &JournalFull<f64>, stepper: &impl StiffStepper) -> (Vec<f64>, f64) {
     let speeds: Vec<f64> = (0..=2 * STEPS)
         .map(|i| 0.127 * (0.5 * DT_S * i as f64 * 2.0).sin())

@@ -1,5 +1,7 @@
-//! Prints the hysteresis loop of any law in newtons, friction against position over one stroke
-//! forward and back, and the steady curve of the law.
+//! Prints the hysteresis loop of any law in newtons, and the steady friction of the law against
+//! speed.
+//!
+//! The loop is friction against position over one stroke forward and back.
 //!
 //! `cargo run -p jbf-core --example law_loop -- lugre`
 
@@ -8,7 +10,7 @@ use jbf_core::law::{steady_n, with_law, Named, Visitor, CATALOGUE};
 use jbf_core::{Chain, Clock, Motion, ParameterError};
 use std::f64::consts::TAU;
 
-/// A stroke of 2 mm every two seconds.
+/// Imposed motion at a time: a stroke of 2 mm every two seconds.
 fn motion(time_s: f64) -> Motion<f64> {
     let (sin, cos) = (0.5 * TAU * time_s).sin_cos();
     Motion::at_rest(1.0)
@@ -17,7 +19,7 @@ fn motion(time_s: f64) -> Motion<f64> {
         .with_angle_rad(-1e-3 * cos) // on a linear axis the place, m
 }
 
-/// Table of the second period: forty rows, fifty steps per row.
+/// Prints a table of the second period: forty rows, one every fifty steps.
 struct Table;
 
 impl Visitor<f64> for Table {

@@ -1,6 +1,9 @@
-//! Influence of the inertia of the journal. Prints, as comma-separated values, the largest difference of
-//! friction between the full and the reduced model over a period of `U = amplitude sin(omega t)`,
-//! relative to the loop's peak, once the film has settled: Table 4.2, both clocks.
+//! Influence of the inertia of the journal on the friction, for the parameters of Table 4.2 (Cohn
+//! 1998) and both time scales of the film.
+//!
+//! Prints comma-separated values: the largest difference of the friction between the models with
+//! and without inertia, over a period of `U = amplitude sin(omega t)` after the initial transient,
+//! relative to the peak of the loop.
 //!
 //! `cargo run --release -p jbf-core --example reduction_map > reduction.csv`
 
@@ -11,10 +14,11 @@ use jbf_core::{Bearing, Clock, ParameterError};
 use std::f64::consts::TAU;
 
 const SAMPLES: usize = 1000;
-/// Settling time in units of dimensionless time; the longest memory of the film is about eight.
+/// Duration of the initial transient in dimensionless time; the longest time constant of the film
+/// is about eight.
 const SETTLING: f64 = 30.0;
 
-/// Unsigned friction over the first whole period after the settling.
+/// Unsigned friction coefficient over the first whole period after the initial transient.
 fn loop_of<F: Film<f64, N>, const N: usize>(
     film: &F,
     settling_s: f64,

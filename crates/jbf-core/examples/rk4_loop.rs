@@ -1,5 +1,7 @@
-//! Error of the loop's own stepper, Runge-Kutta, relative to that of Euler: friction
-//! along a reversal of U = 0.127 sin(2 t), against a trajectory accurate to 1e-9.
+//! Error of the Runge-Kutta method of a control loop relative to that of the Euler method.
+//!
+//! The friction along a reversal of U = 0.127 sin(2 t) is compared with a trajectory accurate to
+//! 1e-9.
 //!
 //! `cargo run --release -p jbf-core --example rk4_loop`
 

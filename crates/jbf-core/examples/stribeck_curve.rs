@@ -1,4 +1,5 @@
-//! Prints the Stribeck curve of Table 4.2: speed, eccentricity and steady friction.
+//! Prints the Stribeck curve for the parameters of Table 4.2 (Cohn 1998): speed, eccentricity ratio
+//! and steady friction coefficient.
 //!
 //! `cargo run -p jbf-core --example stribeck_curve`
 

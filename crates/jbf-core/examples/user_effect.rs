@@ -1,5 +1,7 @@
-//! An effect that is not in the catalogue, together with catalogue effects: a wiper that drags harder in one
-//! half of each turn. The crate is not touched.
+//! A user-defined effect combined with effects of the catalogue: a wiper whose friction varies over
+//! a turn.
+//!
+//! No change of the crate is necessary.
 //!
 //! ```text
 //! cargo run --example user_effect
@@ -10,7 +12,7 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::motion::JournalMotion;
 use jbf_core::{Bearing, Chain, Clock, Friction, Motion, ParameterError, Real};
 
-/// Wiper whose friction `F_w (1 + sin th)/2` varies over a turn.
+/// Wiper with the friction `F_w (1 + sin th)/2`, where `th` is the shaft angle.
 #[derive(Clone, Copy, Debug)]
 struct Wiper<T> {
     force_n: T,

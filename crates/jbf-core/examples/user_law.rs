@@ -1,5 +1,7 @@
-//! A law that is in no catalogue, with effects that are: dry friction that falls with the power of
-//! speed, `F = F_1 (|v|/v_1)^-p`, combined with effects of the catalogue. The crate is not touched.
+//! A user-defined law combined with effects of the catalogue: dry friction that falls with a power
+//! of the speed, `F = F_1 (|v|/v_1)^-p`.
+//!
+//! No change of the crate is necessary.
 //!
 //! ```text
 //! cargo run --example user_law
@@ -11,7 +13,8 @@ use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
 
 /// Friction of a slide, `F_1 (|v|/v_1)^-p`, N.
 ///
-/// It does not depend on the load: its coefficient refers to one newton.
+/// The friction does not depend on the load. Its coefficient is the friction relative to a load of
+/// one newton.
 #[derive(Clone, Copy, Debug)]
 struct FallingPower<T> {
     at_unit_speed_n: T,

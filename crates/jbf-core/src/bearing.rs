@@ -1,10 +1,11 @@
-//! Geometry and lubricant of a journal bearing, and the dimensionless groups (3.1) to (3.4).
+//! Geometry and lubricant of a journal bearing, and the dimensionless groups of equations (3.1) to
+//! (3.4) of Cohn (1998).
 
 use crate::builder::with_fields;
 use crate::error::{check, positive, Error};
 use crate::real::Real;
 
-/// A journal bearing and its lubricant: the data of a rig that are known before any fit.
+/// Journal bearing and its lubricant: the data of a rig that are known before any fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bearing {
@@ -23,14 +24,14 @@ pub struct Bearing {
 }
 
 impl Default for Bearing {
-    /// Returns [`Bearing::new`].
+    /// Returns [`Bearing::new`]: one bearing whose sizes are not set.
     fn default() -> Self {
         Self::new()
     }
 }
 
 impl Bearing {
-    /// The bearing of Cohn's thesis, 10W-40 oil (Tables 4.2 to 4.5).
+    /// Bearing of Cohn (1998) with 10W-40 oil (Tables 4.2 to 4.5).
     pub const THESIS: Self = Self {
         radius_m: 0.0127,
         length_m: 0.01905,
@@ -40,7 +41,7 @@ impl Bearing {
         viscosity_pa_s: 0.002,
     };
 
-    /// One bearing with all sizes unset; set each with its `with_...` method.
+    /// Creates one bearing whose sizes are not set; set each with its `with_...` method.
     ///
     /// [`Bearing::checked`] reports a missing size by name.
     #[must_use]
@@ -64,11 +65,11 @@ impl Bearing {
         with_viscosity_pa_s => viscosity_pa_s: f64,
     }
 
-    /// Checks every size.
+    /// Returns the bearing if every size is valid.
     ///
     /// # Errors
-    /// Names the first size that is not positive and finite, or a clearance that is not smaller
-    /// than the radius.
+    /// Reports the name of the first size that is not positive and finite, or a clearance that is
+    /// not smaller than the radius.
     pub fn checked(self) -> Result<Self, Error> {
         positive("radius_m", self.radius_m)?;
         positive("length_m", self.length_m)?;
@@ -90,14 +91,14 @@ impl Bearing {
         Ok(self)
     }
 
-    /// Load number `Fb = C^2 F / (mu U_tr L^3)`, equation (3.1).
+    /// Load number (dimensionless load) `Fb = C^2 F / (mu U_tr L^3)`, equation (3.1).
     pub fn load_number<T: Real>(&self, load_n: T, u_tr_m_s: T) -> T {
         let l3 = self.length_m * self.length_m * self.length_m;
         let group = self.clearance_m * self.clearance_m / (self.viscosity_pa_s * l3);
         T::of(group) * load_n / u_tr_m_s
     }
 
-    /// Mass number `mb = C^3 U_tr m / (mu L^3 R^2)`, equation (3.4).
+    /// Mass number (dimensionless mass) `mb = C^3 U_tr m / (mu L^3 R^2)`, equation (3.4).
     pub fn mass_number<T: Real>(&self, u_tr_m_s: T) -> T {
         let l3 = self.length_m * self.length_m * self.length_m;
         let c3 = self.clearance_m * self.clearance_m * self.clearance_m;
@@ -105,7 +106,7 @@ impl Bearing {
         T::of(group) * u_tr_m_s
     }
 
-    /// Ratio `C R / L^2` of the viscous term in (3.14).
+    /// Factor `C R / L^2` of the viscous friction in equation (3.14).
     pub fn viscous_ratio(&self) -> f64 {
         self.radius_m * self.clearance_m / (self.length_m * self.length_m)
     }

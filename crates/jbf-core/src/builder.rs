@@ -1,4 +1,4 @@
-//! Builder methods for settings.
+//! Macro for the builder methods of types that hold settings.
 //!
 //! A constructor takes the required values, and `with_NAME` methods set the rest. A new field
 //! therefore does not break existing callers.

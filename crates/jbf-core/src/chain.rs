@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Each stage takes its input at both ends of the step and returns its output at the end, so the
-//! chain keeps the order of its steppers. Feedback (a warming film, the load on a compliant drive)
-//! uses the values of the previous step.
+//! order of accuracy is that of the integration method. Feedback (a warming film, the load on a
+//! compliant drive) uses the values of the previous step.
 
 use crate::bearing::Bearing;
 use crate::effect::{EffectSet, Effects, Resistance, Rig, Signal};
@@ -17,24 +17,23 @@ use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use crate::record::Record;
 
-/// Shortest time step, s; a shorter step counts as zero, because its inverse overflows single
-/// precision.
+/// Shortest time step, s. A shorter step counts as a step of zero length, because its inverse would
+/// overflow in single precision.
 pub const SHORTEST_STEP_S: f64 = 1e-12;
 
-/// A friction law and the effects between it and the record.
-///
-/// The effects are any selection from the catalogue, or a statically typed [set](EffectSet).
+/// Signal chain: a friction law and the effects between motion, friction and recorded force,
+/// evaluated in a fixed order.
 #[derive(Clone, Copy, Debug)]
 pub struct Chain<T: Real, L, E = Effects<T>> {
     /// The friction law.
     pub law: L,
-    /// The effects.
+    /// Effects of the drive, lubricant, load, contact and instrument.
     pub effects: E,
-    /// Properties of the rig that effects need.
+    /// Properties of the rig that effects need, such as the journal radius.
     pub rig: Rig<T>,
 }
 
-/// State of a running chain.
+/// State of a chain in the course of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
     /// State of the friction law.
@@ -43,33 +42,35 @@ pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
-    /// Factor by which the lubricant scales the speed.
+    /// Factor by which the effects of the lubricant scale the speed of the film.
     film_factor: T,
-    /// Unsigned friction level that deflects a bristle: the level of a law with its own bristle,
-    /// the whole friction of any other law.
+    /// Unsigned friction level that determines the deflection of a bristle, as a coefficient. For a
+    /// law that deflects as a whole ([`Law::BENDS_WHOLE`]), it is the whole friction.
     magnitude: T,
     /// Unsigned part of the force that jumps when a rigid journal reverses, N.
     jump_n: T,
-    /// Friction force of one bearing before the instrument, N.
+    /// Friction force of one bearing, N, before the effects of the instrument.
     pub force_n: T,
-    /// Reading of the instrument, N.
+    /// Reading of the instrument (predicted recorded force), N.
     pub reading_n: T,
 }
 
 impl<T: Real, S, E: EffectSet<T>> State<T, S, E> {
-    /// Motion of the journal, which a compliant drive separates from the commanded motion.
+    /// Returns the motion of the journal, which differs from the commanded motion if the drive is
+    /// compliant.
     pub fn journal(&self) -> &JournalMotion<T> {
         &self.journal
     }
 
-    /// Commanded motion at the last accepted sample.
+    /// Returns the commanded motion at the last accepted sample.
     pub fn motion(&self) -> &Motion<T> {
         &self.motion
     }
 }
 
 impl<T: Real, L, E> Chain<T, L, E> {
-    /// Creates a chain from a law and effects, on a bearing's shaft or on a linear axis (`None`).
+    /// Creates a chain from a law and effects, on the shaft of a bearing or, for `None`, on a
+    /// linear axis.
     pub fn round(law: L, effects: E, bearing: Option<&Bearing>) -> Self {
         let rig = Rig::on(bearing);
         Self { law, effects, rig }
@@ -77,8 +78,8 @@ impl<T: Real, L, E> Chain<T, L, E> {
 }
 
 impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
-    /// Force that resists the drive of the shaft, N per bearing: the friction itself, or the spring
-    /// force of a compliant drive.
+    /// Returns the force that resists the drive, N per bearing: the friction, or the spring force
+    /// of a compliant drive.
     #[inline]
     pub fn felt(&self, state: &State<T, L::State, E>) -> Friction<T> {
         if let Some(smooth_n) = self
@@ -106,8 +107,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
     /// Velocity-dependent friction at `velocity_m_s` (m/s) relative to rest, without the part that
     /// jumps, N per bearing.
     ///
-    /// It contains the viscous part of the law through the lubricant and the contact, and drags. It
-    /// is zero behind a compliant drive, whose spring force is transmitted instead.
+    /// The result contains the viscous friction of the law, as modified by the effects of the
+    /// lubricant and the contact, and drags. It is zero with a compliant drive, which transmits
+    /// only its spring force.
     #[inline]
     pub(crate) fn viscous_n(&self, state: &State<T, L::State, E>, velocity_m_s: T) -> T {
         if self.effects.has_drive() {
@@ -138,7 +140,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         sliding.smooth * load_n + beside_n(&moving) - beside_n(&still)
     }
 
-    /// State at the first sample of a run.
+    /// Returns the state at the first sample of a run.
     pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, E> {
         let journal = JournalMotion::from(motion);
         let mut state = State {
@@ -166,10 +168,11 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         state
     }
 
-    /// Advances to the motion `to`, `dt_s` later, and returns the reading there, N.
+    /// Advances the state to the motion `to`, `dt_s` later, and returns the reading of the
+    /// instrument there, N.
     ///
-    /// A step of zero length ([`SHORTEST_STEP_S`]) and a sample that is not finite change nothing.
-    /// One lost sample of a sensor must not stay in the state of a filter forever.
+    /// A step shorter than [`SHORTEST_STEP_S`] and a sample that is not finite do not change the
+    /// state. A single invalid sample would otherwise remain in the state of a filter forever.
     #[inline(always)]
     pub fn step(&self, state: &mut State<T, L::State, E>, to: &Motion<T>, dt_s: T) -> T {
         if !(dt_s >= T::of(SHORTEST_STEP_S) && dt_s.is_finite() && to.is_finite()) {
@@ -205,7 +208,8 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         state.reading_n
     }
 
-    /// Longest stable step of the law under the lightest and the heaviest load of a run, s.
+    /// Longest stable step of the law at the top speed (m/s), under the lightest and the heaviest
+    /// load of a run, s.
     pub(crate) fn longest_film_step_s(&self, record: &Record<'_>, top_m_s: f64) -> f64 {
         let Some(first) = record.motion(0) else {
             return self.law.longest_step_s(top_m_s);
@@ -259,7 +263,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         })
     }
 
-    /// The law scaled for this load, where an effect scales it.
+    /// Returns the law scaled for the load `load_n`, if an effect scales the law.
     #[inline(always)]
     fn scaled(&self, states: &mut E::State, load_n: T) -> Option<L> {
         let mut scales = None;
@@ -268,7 +272,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         self.law.scaled(&scales?)
     }
 
-    /// Factor by which the lubricant scales the speed that the film sees.
+    /// Factor by which the effects of the lubricant scale the speed of the film.
     #[inline(always)]
     fn film_factor(&self, state: &State<T, L::State, E>, journal: &JournalMotion<T>) -> T {
         let mut factor = T::ONE;
@@ -276,7 +280,8 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         factor
     }
 
-    /// Computes the force from the film's state: contact, other friction, and feedback.
+    /// Computes the force from the state of the law: contact effects, other friction, and the
+    /// feedback to the drive and the lubricant.
     #[inline(always)]
     fn act(
         &self,
@@ -349,7 +354,8 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
     }
 }
 
-/// Difference between the direction of motion inside a step and the `direction` at one end.
+/// Change of the direction from inside a step to one of its ends, where the direction is
+/// `direction`.
 ///
 /// The direction inside a step is the sign of its mean speed. A rigid journal that starts, stops or
 /// reverses at that end jumps. A journal held by a compliant drive passes through every direction

@@ -1,11 +1,12 @@
-//! Time scale of the dimensionless equations.
+//! Time scale of the dimensionless film equations.
 
-/// Clock that converts seconds into the dimensionless time of equations (3.7) to (3.19).
+/// Time scale that converts seconds into the dimensionless time `tbar` of equations (3.7) to (3.19)
+/// of Cohn (1998).
 ///
-/// Equation (3.4) fixes it as `tbar = t U_tr / R`. That is [`Clock::Journal`], the physical clock
-/// and the default. Cohn's control programs step `TS * eps'` with `TS` in seconds, as if `tbar = t
-/// / (1 s)`. That is [`Clock::Thesis`], which Tables 4.2 to 4.5 and chapter 6 were tuned with.
-/// Hysteresis loops differ visibly between the two.
+/// Equation (3.4) defines `tbar = t U_tr / R`. This physical time scale is [`Clock::Journal`], the
+/// default. Cohn's control programs step `TS * eps'` with `TS` in seconds, which implies `tbar = t
+/// / (1 s)`. This is [`Clock::Thesis`]; Tables 4.2 to 4.5 and chapter 6 were fitted with it. The
+/// hysteresis loops of the two differ visibly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
     /// Time scale `tbar = t U_tr / R`.
@@ -16,7 +17,7 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// Name used in files and on the command line.
+    /// Returns the name used in files and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Clock::Journal => "journal",
@@ -24,7 +25,7 @@ impl Clock {
         }
     }
 
-    /// Returns the clock with this name.
+    /// Returns the time scale with this name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
             "journal" => Some(Clock::Journal),

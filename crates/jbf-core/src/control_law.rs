@@ -1,18 +1,18 @@
-//! Control laws before compensation, and their gains: the two of the thesis, section 6.3.
+//! Control laws before friction compensation, and their gains, from section 6.3 of Cohn (1998).
 //!
 //! ```text
 //! position   u = -k1 (x - x_ref) - k2 v_hat         s^2 + (a + b k2) s + b k1
 //! velocity   u = -g (v_hat - v_ref) + C v_ref       g b = 457 1/s, C = a/b
 //! ```
 //!
-//! For the thesis's drive ([`Drive::THESIS`]) the gains are exactly those printed in the thesis.
-//! For any other drive they give the compensated plant the same poles.
+//! For the drive of Cohn (1998), [`Drive::THESIS`], the gains are exactly those printed there. For
+//! any other drive, the gains result in the same poles of the compensated plant.
 
 use crate::plant::Drive;
 use crate::real::Real;
 use crate::reference::Target;
 
-/// A control law before compensation.
+/// Control law before friction compensation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BaseLaw<T> {
@@ -32,24 +32,24 @@ pub enum BaseLaw<T> {
     },
 }
 
-/// Characteristic polynomial `s^2 + 20 s + 200` of the thesis's position loop without friction:
-/// poles at -10 +- 10i.
+/// Characteristic polynomial `s^2 + 20 s + 200` of the position loop of Cohn (1998) without
+/// friction: poles at -10 +- 10i.
 const THESIS_POLYNOMIAL: [f64; 2] = [200.0, 20.0];
 
 impl BaseLaw<f64> {
-    /// Position control of the thesis, with `k1` and `k2` from Appendix E.
+    /// Position control of Cohn (1998), with `k1` and `k2` from Appendix E.
     pub const THESIS_POSITION: Self = Self::Position {
         angle_v_rad: 0.43764,
         speed_v_s_rad: -0.25164,
     };
 
-    /// Velocity control of the thesis, with `g` and `C` from Appendix D.
+    /// Velocity control of Cohn (1998), with `g` and `C` from Appendix D.
     pub const THESIS_VELOCITY: Self = Self::Velocity {
         speed_v_s_rad: 1.0,
         forward_v_s_rad: 0.295,
     };
 
-    /// Position control of the thesis for a drive: poles at -10 +- 10i.
+    /// Creates position control of a drive with the poles of Cohn (1998), -10 +- 10i.
     #[must_use]
     pub fn position(drive: &Drive) -> Self {
         if drive.turns_like(&Drive::THESIS) {
@@ -58,8 +58,8 @@ impl BaseLaw<f64> {
         Self::with_polynomial(THESIS_POLYNOMIAL, drive)
     }
 
-    /// Velocity control of the thesis for a drive: the same stiffness, with feedforward of the
-    /// wanted speed.
+    /// Creates velocity control of a drive with the loop gain of Cohn (1998), and feedforward of
+    /// the reference speed.
     #[must_use]
     pub fn velocity(drive: &Drive) -> Self {
         if drive.turns_like(&Drive::THESIS) {
@@ -71,14 +71,15 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// Position control with both poles at `w (-1 +- i)/sqrt(2)`, w in rad/s.
+    /// Creates position control with poles at `w (-1 +- i)/sqrt(2)`, where `w` is `natural_rad_s`.
     #[must_use]
     pub fn placed(natural_rad_s: f64, drive: &Drive) -> Self {
         let w = natural_rad_s;
         Self::with_polynomial([w * w, w * core::f64::consts::SQRT_2], drive)
     }
 
-    /// Position control that gives the plant the polynomial `s^2 + c1 s + c0`, from `[c0, c1]`.
+    /// Creates position control that gives the closed loop the polynomial `s^2 + c1 s + c0`, from
+    /// `[c0, c1]`.
     fn with_polynomial([c0, c1]: [f64; 2], drive: &Drive) -> Self {
         Self::Position {
             angle_v_rad: c0 / drive.input_rad_s2_v,
@@ -86,7 +87,8 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// Both gains, in the order of the law above: `k1` and `k2`, or `g` and `C`.
+    /// Returns both gains in the order of the equations of this module: `k1` and `k2`, or `g` and
+    /// `C`.
     #[must_use]
     pub fn gains(&self) -> [f64; 2] {
         match *self {
@@ -101,9 +103,11 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// Feedforward gain of the law on the wanted speed, V s/rad.
+    /// Returns the gain from the reference speed to the output while the shaft follows the
+    /// reference, V s/rad.
     ///
-    /// The position law uses the measured speed, not the wanted speed; its gain on it is `-k2`.
+    /// It is `C` in velocity control and `-k2` in position control, which uses the measured speed
+    /// only.
     #[must_use]
     pub fn forward_v_s_rad(&self) -> f64 {
         match *self {
@@ -132,19 +136,19 @@ impl BaseLaw<f64> {
 }
 
 impl<T: Real> BaseLaw<T> {
-    /// [`BaseLaw::THESIS_POSITION`] in this number type.
+    /// Returns [`BaseLaw::THESIS_POSITION`] in this number type.
     #[must_use]
     pub fn thesis_position() -> Self {
         BaseLaw::THESIS_POSITION.lift()
     }
 
-    /// [`BaseLaw::THESIS_VELOCITY`] in this number type.
+    /// Returns [`BaseLaw::THESIS_VELOCITY`] in this number type.
     #[must_use]
     pub fn thesis_velocity() -> Self {
         BaseLaw::THESIS_VELOCITY.lift()
     }
 
-    /// Controlled quantity minus its reference.
+    /// Returns the control error: controlled quantity minus its reference, rad or rad/s.
     #[inline]
     pub fn error(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
         match self {
@@ -153,7 +157,7 @@ impl<T: Real> BaseLaw<T> {
         }
     }
 
-    /// Control voltage, V.
+    /// Returns the output of the control law, V.
     #[inline]
     pub fn output_v(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
         match *self {
@@ -168,7 +172,7 @@ impl<T: Real> BaseLaw<T> {
         }
     }
 
-    /// Reference speed and acceleration of the target, rad/s and rad/s^2.
+    /// Returns the reference speed and acceleration of the target, rad/s and rad/s^2.
     #[inline]
     pub fn wanted(&self, target: &Target<T>) -> [T; 2] {
         match self {
@@ -182,7 +186,7 @@ impl<T: Real> BaseLaw<T> {
 mod tests {
     use super::*;
 
-    /// Real and imaginary part of the upper pole of `s^2 + (a + b k2) s + b k1`.
+    /// Real and imaginary part of the upper root of the polynomial `s^2 + (a + b k2) s + b k1`.
     fn pole(law: &BaseLaw<f64>, drive: &Drive) -> [f64; 2] {
         let [k1, k2] = law.gains();
         let half = 0.5 * (drive.damping_1_s + drive.input_rad_s2_v * k2);

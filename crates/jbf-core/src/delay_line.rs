@@ -1,17 +1,18 @@
-//! Pure time delay of a signal.
+//! Pure time delay of a signal, with a derivative with respect to the delay.
 //!
-//! A fixed number of points is spread over the delay and interpolated linearly, so that the delayed
-//! value has a derivative with respect to the delay.
+//! The signal is stored at a fixed number of points over the delay and is interpolated linearly
+//! between them.
+//!
 
 use crate::real::Real;
 
 /// Number of points in the delay line.
 ///
-/// With steps longer than `delay / (POINTS - 4)` every step is a point. Shorter steps share a
-/// point, so that the line always spans the whole delay.
+/// Each step longer than `delay / (POINTS - 4)` is a point. Shorter steps share a point, so that
+/// the line always covers the whole delay.
 pub(crate) const POINTS: usize = 64;
 
-/// Delay line for any step and any delay.
+/// Delay line for steps of any length and any delay.
 ///
 /// The signal before the first point is taken as constant.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,8 @@ impl<T: Real> DelayLine<T> {
         self.filled == 0
     }
 
-    /// Appends the signal `dt_s` after the last point; the line is to span `delay_s`.
+    /// Appends the value of the signal `dt_s` after the last point, and keeps the points of the
+    /// last `delay_s`.
     #[inline(always)]
     pub(crate) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
         let spacing = delay_s / T::of((POINTS - 4) as f64);
@@ -62,7 +64,7 @@ impl<T: Real> DelayLine<T> {
         self.gap_s[next] = dt_s;
     }
 
-    /// Signal `delay_s` ago; zero for an empty line.
+    /// Returns the signal `delay_s` ago; zero for an empty line.
     #[inline(always)]
     pub(crate) fn back(&self, delay_s: T) -> T {
         let mut age = T::ZERO;
@@ -86,7 +88,7 @@ mod tests {
     use super::*;
     use crate::Dual;
 
-    /// A ramp is delayed exactly, for steps short and long relative to the delay.
+    /// A delayed ramp is exact for steps that are short or long relative to the delay.
     #[test]
     fn delayed_ramp_lags_by_the_delay_for_any_step() {
         let delay = 0.0173_f64;

@@ -11,16 +11,16 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// A value with its derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Dual<const N: usize> {
-    /// The value.
+    /// Value of the number.
     pub value: f64,
-    /// Derivatives with respect to each parameter.
+    /// Derivatives of the value with respect to each parameter.
     pub slope: [f64; N],
 }
 
 impl<const N: usize> Dual<N> {
-    /// Returns parameter number `index`: its derivative with respect to itself is one.
+    /// Creates the parameter number `index`: its derivative with respect to itself is one.
     ///
-    /// An `index` of `N` or more gives a constant.
+    /// An `index` of `N` or more creates a constant.
     pub fn parameter(value: f64, index: usize) -> Self {
         let mut slope = [0.0; N];
         if let Some(own) = slope.get_mut(index) {
@@ -29,7 +29,7 @@ impl<const N: usize> Dual<N> {
         Self { value, slope }
     }
 
-    /// Returns `value` with the derivatives of `self` times `factor` (the chain rule).
+    /// Returns `value` with the derivatives of `self` multiplied by `factor` (the chain rule).
     #[inline(always)]
     fn chain(self, value: f64, factor: f64) -> Self {
         let mut slope = self.slope;
@@ -241,7 +241,7 @@ impl<const N: usize> Real for Dual<N> {
 mod tests {
     use super::*;
 
-    /// Compares every operation with a central difference of the plain f64 evaluation.
+    /// The derivative of each operation equals a central difference of its evaluation in f64.
     #[test]
     fn derivatives_of_dual_numbers_match_central_differences() {
         fn f<T: Real>(x: T, y: T) -> T {

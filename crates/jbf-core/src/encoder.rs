@@ -1,23 +1,23 @@
-//! Incremental encoder: converts a counter that rolls over to an angle that does not.
+//! Incremental encoder: converts a counter that rolls over to an angle without roll-over.
 
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
-/// Counts per radian of the thesis's encoder.
+/// Counts per radian of the encoder in Cohn (1998).
 pub const THESIS_COUNTS_PER_RAD: f64 = 2387.3;
-/// Number of bits of the thesis's counter.
+/// Number of bits of the encoder counter in Cohn (1998).
 pub const THESIS_BITS: u32 = 16;
 
-/// Conversion of counts to radians, with roll-over and detection of jumps.
+/// Conversion of encoder counts to radians, with roll-over and detection of jumps.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder<T> {
     rad_per_count: T,
-    /// Shift that brings the counter's sign bit to the top of an `i32`.
+    /// Shift that moves the sign bit of the counter to the top of an `i32`.
     shift: u32,
     most_counts: i32,
 }
 
-/// State of the encoder.
+/// Counter values of an encoder and the number of samples without a count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
@@ -27,13 +27,13 @@ pub struct State {
     still: u32,
 }
 
-/// Result of one sample.
+/// Motion of the shaft in one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sample<T> {
-    /// Rotation since the previous sample, rad; zero in a jump.
+    /// Rotation since the previous sample, rad; zero if the counter jumped.
     pub moved_rad: T,
-    /// True if the counter changed by more than the shaft can move; the step is then ignored.
+    /// True if the counter changed by more than the shaft can move; the change is then ignored.
     pub jumped: bool,
     /// Number of samples since the counter last changed.
     pub still: u32,
@@ -42,7 +42,8 @@ pub struct Sample<T> {
 impl<T: Real> Encoder<T> {
     /// Creates an encoder with `counts_per_rad` counts per radian and a counter of `bits` bits.
     ///
-    /// `top_speed_rad_s` is the highest speed of the shaft (rad/s); a larger change is a jump.
+    /// `top_speed_rad_s` is the highest speed of the shaft (rad/s). A change of the counter by more
+    /// than this speed allows within `dt_s` is a jump.
     ///
     /// # Errors
     /// Sizes must be positive. The counter must have 8 to 32 bits and more than twice the counts of
@@ -72,7 +73,7 @@ impl<T: Real> Encoder<T> {
         })
     }
 
-    /// Processes a counter value; angles count from the first sample.
+    /// Processes a counter value and returns the motion of the shaft since the previous one.
     #[inline]
     pub fn step(&self, state: &mut State, counter: u32) -> Sample<T> {
         let raw = counter.wrapping_sub(state.last) << self.shift;
@@ -102,7 +103,8 @@ impl<T: Real> Encoder<T> {
         }
     }
 
-    /// Angle since the first sample, rad, without the rounding error of a sum of increments.
+    /// Returns the angle since the first sample, rad, without the accumulated rounding error of a
+    /// sum of increments.
     #[inline]
     #[must_use]
     pub fn angle_rad(&self, state: &State) -> T {
@@ -111,7 +113,7 @@ impl<T: Real> Encoder<T> {
         (T::from_i32(high) * T::of(1_048_576.0) + T::from_i32(low)) * self.rad_per_count
     }
 
-    /// Angle per count, rad.
+    /// Returns the angle per count, rad.
     pub fn rad_per_count(&self) -> T {
         self.rad_per_count
     }

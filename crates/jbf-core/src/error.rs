@@ -1,25 +1,25 @@
-//! One error type for all constructors: the parameter, its value and the rule.
+//! Error type of all constructors: the parameter, its value and the violated rule.
 
 use core::fmt;
 
 /// Reason why a constructor failed.
 ///
-/// It is displayed as one line in lower case with the parameter, the value and the rule: `radius_m
-/// = -1 must be positive and finite`.
+/// An error is displayed as one line in lower case with the parameter, the value and the rule:
+/// `radius_m = -1 must be positive and finite`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
-    /// The catalogue has no law of that name.
+    /// The catalogue has no law with this name.
     UnknownLaw,
-    /// The catalogue has no effect of that name.
+    /// The catalogue has no effect with this name.
     UnknownEffect,
     /// A required value is missing.
     Missing {
         /// Name of the parameter, with its unit (`load_n`).
         name: &'static str,
     },
-    /// The list has fewer values than parameters.
+    /// A list has fewer values than parameters.
     TooFew {
         /// Name of the list of values.
         name: &'static str,
@@ -55,9 +55,9 @@ pub enum Error {
         name: &'static str,
         /// Given value.
         value: f64,
-        /// Least value allowed.
+        /// Smallest permitted value.
         lower: f64,
-        /// Largest value allowed.
+        /// Largest permitted value.
         upper: f64,
     },
     /// The value violates another rule of a single parameter.
@@ -71,11 +71,12 @@ pub enum Error {
     },
 }
 
-/// The error under its former name as a struct.
+/// Former name of [`Error`].
 pub type ParameterError = Error;
 
 impl Error {
-    /// Parameter that violates its rule; `law` or `effect` for an unknown name.
+    /// Returns the name of the parameter that violates its rule; `law` or `effect` for an unknown
+    /// name.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match *self {
@@ -91,7 +92,7 @@ impl Error {
         }
     }
 
-    /// Given value, if any.
+    /// Returns the refused value, if any.
     #[must_use]
     pub const fn value(&self) -> Option<f64> {
         match *self {
@@ -105,7 +106,7 @@ impl Error {
         }
     }
 
-    /// Violated rule, without its numbers.
+    /// Returns the violated rule, without its numbers.
     #[must_use]
     pub const fn rule(&self) -> &'static str {
         match *self {
@@ -144,7 +145,7 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// Checks a rule that has no error variant of its own.
+/// Returns an [`Error::Rule`] with the parameter's name, value and rule unless `ok` is true.
 pub(crate) fn check(
     ok: bool,
     name: &'static str,

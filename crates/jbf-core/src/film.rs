@@ -1,7 +1,7 @@
-//! Film integrals of the short bearing, equations (3.11) to (3.13).
+//! Film integrals of the short bearing, equations (3.11) to (3.13) of Cohn (1998).
 //!
-//! The scan prints J11 with the cube of `1 - eps^2`. The quadrature, Appendix C and the square in
-//! (3.20) all give the exponent 3/2.
+//! The scanned text prints J11 with the cube of `1 - eps^2`. The quadrature, Appendix C and the
+//! square in (3.20) all imply the exponent 3/2.
 
 use crate::real::Real;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
@@ -23,7 +23,7 @@ pub struct FilmIntegrals<T> {
 }
 
 impl<T: Real> FilmIntegrals<T> {
-    /// Evaluates the integrals at `0 <= eps < 1`.
+    /// Evaluates the film integrals at `0 <= eps < 1`.
     pub fn at(eps: T) -> Self {
         // (1 - eps)(1 + eps) keeps the digits that 1 - eps^2 loses close to contact.
         let d = (T::ONE - eps) * (T::ONE + eps);
@@ -41,7 +41,7 @@ impl<T: Real> FilmIntegrals<T> {
 mod tests {
     use super::*;
 
-    /// Reference values by quadrature of the defining integrals.
+    /// Film integrals equal the quadrature of their definitions.
     #[test]
     fn film_integrals_match_quadrature() {
         let reference = [

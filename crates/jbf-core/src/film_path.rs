@@ -1,31 +1,34 @@
-//! Stored path of a film along a record.
+//! Stored eccentricity of a film along a record.
 //!
-//! The film depends on the motion and on its own two parameters, and not on later stages. Chains
-//! that differ only in later stages therefore need not integrate the film again.
+//! The film depends on the motion and on two parameters of the law only, and not on later stages of
+//! the signal chain. Chains that differ only in later stages therefore need not integrate the film
+//! again.
 //!
 //! [`FilmSteps`] is a law that reports the steps that a record requires of a film. [`OnPath`] is a
-//! law whose film takes its states from a list. On the path of its own parameters it gives the same
-//! bits.
+//! law whose film takes its states from a list. With the states that belong to its parameters, the
+//! results are identical bit for bit to an integration.
 
 use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::JournalMotion;
 use crate::real::Real;
 
-/// State of the film at the end of one step that enters friction ([`Law::film`]), and its
-/// derivatives with respect to the two film parameters of the law ([`Law::FILM_PARAMETERS`]).
+/// State of the film at the end of a step, with its derivatives with respect to the two film
+/// parameters of the law.
+///
+/// See [`Law::film`] and [`Law::FILM_PARAMETERS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// State of the film.
+    /// State of the film: the square of the eccentricity ratio for a journal law.
     pub film: f64,
-    /// Derivatives, in the order of [`Law::FILM_PARAMETERS`].
+    /// Derivatives of the state, in the order of [`Law::FILM_PARAMETERS`].
     pub slopes: [f64; 2],
 }
 
-/// One step that a record requires of a film.
+/// Input of one integration step of a film along a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmStep {
-    /// Speed |U| at the start, middle and end of the step, m/s.
+    /// Absolute surface speeds |U| at the start, middle and end of the step, m/s.
     pub speed_m_s: [f64; 3],
     /// Length of the step, s.
     pub dt_s: f64,
@@ -33,24 +36,21 @@ pub struct FilmStep {
     pub load_n: f64,
 }
 
-/// A law that only determines the steps that a record requires of a film, and passes them to
-/// `sink`.
-///
-/// It has neither a film nor friction.
+/// Law without film and friction that passes the integration steps of a record to `sink`.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmSteps<F> {
     sink: F,
 }
 
 impl<F> FilmSteps<F> {
-    /// Creates a law that passes each step to `sink`.
+    /// Creates a law that passes each integration step to `sink`.
     pub fn new(sink: F) -> Self {
         Self { sink }
     }
 }
 
 impl<F: Fn(FilmStep)> Law<f64> for FilmSteps<F> {
-    /// Load, N.
+    /// Load on the bearing, N.
     type State = f64;
 
     fn start(&self, load_n: f64) -> f64 {
@@ -75,20 +75,23 @@ impl<F: Fn(FilmStep)> Law<f64> for FilmSteps<F> {
     }
 }
 
-/// A law whose film follows a stored path.
+/// Law whose film takes its states from a stored path.
 ///
-/// Effects before the film would change the path and must not be combined with it.
+/// Effects on the drive, the lubricant and the film would change the path and must not be combined
+/// with this law.
 #[derive(Clone, Copy, Debug)]
 pub struct OnPath<'a, T, L> {
     law: L,
     parameters: [T; 2],
     path: &'a [Place],
-    /// Index on the path of each step that is made; `None` if all steps are made.
+    /// Index in the path for each step of the chain; `None` if the chain makes every step of the
+    /// path.
     ends: Option<&'a [u32]>,
 }
 
 impl<'a, T, L> OnPath<'a, T, L> {
-    /// Creates a law with its two film parameters, which carry derivatives, and their path.
+    /// Creates a law from its two film parameters, which carry derivatives, and the stored path for
+    /// these parameters.
     pub fn new(law: L, parameters: [T; 2], path: &'a [Place]) -> Self {
         Self {
             law,
@@ -98,8 +101,8 @@ impl<'a, T, L> OnPath<'a, T, L> {
         }
     }
 
-    /// Sets, for [`crate::run::Steps::Last`], the index on the path of the last step before each
-    /// sample except the first.
+    /// Sets the index in the path of the last step before each sample except the first, for
+    /// [`crate::run::Steps::Last`].
     pub fn at(self, ends: &'a [u32]) -> Self {
         Self {
             ends: Some(ends),
@@ -117,7 +120,7 @@ impl<'a, T, L> OnPath<'a, T, L> {
 }
 
 impl<T: Real, L: Law<T>> Law<T> for OnPath<'_, T, L> {
-    /// State of the law, and the number of steps of the film so far.
+    /// State of the law, and the number of steps of the film since the start.
     type State = (L::State, usize);
 
     const HAS_BRISTLE: bool = L::HAS_BRISTLE;

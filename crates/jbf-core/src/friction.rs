@@ -1,36 +1,39 @@
-//! Friction at one instant, in the two parts that all laws, chains and loops distinguish.
+//! Friction at one instant, separated into the part that jumps with the sign of the motion and a
+//! smooth part.
 
 use crate::real::Real;
 
-/// Friction `jump sgn(v) + smooth`: the part that jumps with the sign of the motion, and the rest.
+/// Friction `jump sgn(v) + smooth`: a part that jumps with the sign of the motion, and a smooth
+/// part.
 ///
-/// The unit depends on the source. A law returns a coefficient (or, for a law in newtons, a force,
-/// as the coefficient of one newton). A chain returns newtons on one bearing, a plant or a
+/// The unit depends on the source. A law returns a coefficient; for a law in newtons, it is
+/// relative to a load of one newton. A chain returns newtons on one bearing, a plant or a
 /// compensator volts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<T> {
-    /// Unsigned part that takes the sign of the motion; at rest it holds up to this value.
+    /// Unsigned part that has the sign of the motion; at rest, the friction takes any value up to
+    /// it.
     ///
     /// A law with a bristle returns the level towards which the bristle deflects.
     pub jump: T,
-    /// Remaining signed part: viscous friction, a spring.
+    /// Signed part that is smooth in the speed: viscous friction, a spring.
     pub smooth: T,
 }
 
 impl<T: Real> Friction<T> {
-    /// No friction.
+    /// Zero friction.
     pub const NONE: Self = Self {
         jump: T::ZERO,
         smooth: T::ZERO,
     };
 
-    /// Total friction for a member `direction` of the set-valued sign.
+    /// Returns the total friction for a `direction` in [-1, 1], the set-valued sign of the motion.
     #[inline]
     pub fn along(&self, direction: T) -> T {
         self.jump * direction + self.smooth
     }
 
-    /// Both parts times a factor, which may change the unit.
+    /// Returns both parts multiplied by a factor, which may change the unit.
     #[inline]
     pub fn times(&self, factor: T) -> Self {
         Self {

@@ -2,7 +2,8 @@
 
 use crate::real::Real;
 
-/// The imposed motion at one instant; start with [`Motion::at_rest`] and set the moving quantities.
+/// Imposed motion at one instant; create it with [`Motion::at_rest`] and set the quantities that
+/// differ from rest.
 ///
 /// ```
 /// use jbf_core::Motion;
@@ -21,20 +22,21 @@ pub struct Motion<T> {
     pub acceleration_m_s2: T,
     /// Shaft angle, unwrapped, rad.
     pub angle_rad: T,
-    /// Angle over which a weight acts minus the shaft angle, rad.
+    /// Angle of the weight minus the shaft angle, rad.
     ///
-    /// It is zero except for a joint behind other moving joints, whose link turns with all of them.
+    /// The difference is zero except for a joint that follows other moving joints, whose link turns
+    /// with all of them.
     pub weight_offset_rad: T,
     /// Normal load on one bearing, N.
     pub load_n: T,
     /// Recorded temperature, C.
     ///
-    /// Without it all effects behave as at their reference temperature.
+    /// If it is `None`, all effects behave as at their reference temperature.
     pub temperature_c: Option<T>,
 }
 
 impl<T: Real> Motion<T> {
-    /// Creates a motion at rest under a load, N, at time and angle zero.
+    /// Creates a motion at rest under a load (N), at time and angle zero.
     #[must_use]
     pub fn at_rest(load_n: T) -> Self {
         Self {
@@ -80,7 +82,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// Sets the angle over which a weight acts minus the shaft angle, rad.
+    /// Sets the angle of the weight minus the shaft angle, rad.
     #[inline(always)]
     #[must_use]
     pub fn with_weight_offset_rad(mut self, weight_offset_rad: T) -> Self {
@@ -104,7 +106,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// True if every quantity is finite.
+    /// Returns true if every quantity is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.time_s.is_finite()
@@ -133,9 +135,9 @@ impl<T: Real> Motion<T> {
 
     /// Interpolates the motion at a `fraction` of the step to `other`.
     ///
-    /// Every quantity is linear except the angle, which for a linear speed is a parabola. (Over a
-    /// sample of 20 ms the error of the chord is one step of an encoder, which a stiff drive turns
-    /// into a force.)
+    /// Every quantity is linear except the angle, which is a parabola for a linear speed. (With
+    /// linear interpolation over a sample of 20 ms, the error would be one step of an encoder,
+    /// which a stiff drive converts to a considerable force.)
     #[inline(always)]
     pub fn towards(&self, other: &Self, fraction: T, radius_m: T) -> Self {
         let line = |a: T, b: T| a + (b - a) * fraction;
@@ -158,7 +160,7 @@ impl<T: Real> Motion<T> {
 
 /// Fraction of a step at which a speed that is linear from `from` to `to` crosses zero.
 ///
-/// Returns `None` if it does not change sign inside the step.
+/// Returns `None` if the speed does not change sign inside the step.
 #[inline(always)]
 pub(crate) fn crossing<T: Real>(from: T, to: T) -> Option<T> {
     if from.value() * to.value() < 0.0 {
@@ -168,14 +170,14 @@ pub(crate) fn crossing<T: Real>(from: T, to: T) -> Option<T> {
     }
 }
 
-/// Distance of a parabola below its chord at a fraction of the step, relative to its change of
-/// slope.
+/// Difference between a chord and its parabola at a fraction of the step, relative to the change of
+/// slope over the step.
 #[inline(always)]
 pub(crate) fn sag<T: Real>(share: T) -> T {
     T::of(0.5) * share * (T::ONE - share)
 }
 
-/// Motion of the journal, behind the drive.
+/// Motion of the journal, the output of the drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JournalMotion<T> {
@@ -185,11 +187,12 @@ pub struct JournalMotion<T> {
     pub acceleration_m_s2: T,
     /// Journal angle, rad.
     pub angle_rad: T,
-    /// Angle over which a weight acts minus the journal angle, rad.
+    /// Angle of the weight minus the journal angle, rad.
     pub weight_offset_rad: T,
-    /// Present value of the set-valued sgn(v): -1 or +1 in sliding.
+    /// Value of the set-valued sgn(v): -1 or +1 in sliding.
     ///
-    /// It is between the two where a stuck journal carries less than the sliding friction.
+    /// The value is between -1 and +1 while the journal sticks under a force smaller than the
+    /// sliding friction.
     pub direction: T,
     /// Time since the start of the run, s.
     pub time_s: T,
@@ -200,10 +203,10 @@ pub struct JournalMotion<T> {
 }
 
 impl<T: Real> JournalMotion<T> {
-    /// Direction that enters friction: the sign of the speed.
+    /// Returns the direction of motion for friction: the sign of the speed.
     ///
-    /// At rest the motion may start in either direction, and the direction of the holding force is
-    /// used.
+    /// At rest, it is the sign of the friction force, because the motion may start in either
+    /// direction.
     #[inline(always)]
     pub fn way(&self) -> T {
         if self.velocity_m_s == T::ZERO {
@@ -213,7 +216,8 @@ impl<T: Real> JournalMotion<T> {
         }
     }
 
-    /// Sliding distance from here to `to`, m, for a linear speed; both directions count.
+    /// Returns the sliding distance from this instant to `to`, m, for a linear speed; motion in
+    /// both directions is added.
     #[inline(always)]
     pub fn distance_m(&self, to: &Self, dt_s: T) -> T {
         let (v0, v1) = (self.velocity_m_s, to.velocity_m_s);

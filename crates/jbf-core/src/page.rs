@@ -1,12 +1,12 @@
 //! Description of one parameter of a law or an effect.
 //!
-//! It is the single source of its name, its bounds, the start values of a fit, and its behaviour
-//! under reflection.
+//! The description is the single source of the name, the bounds, the start values of a fit, and the
+//! behaviour under reflection.
 
 use crate::error::{given, within, ParameterError};
 use crate::real::Real;
 
-/// Behaviour of a parameter when the machine is reflected.
+/// Behaviour of a parameter under reflection of the machine, which reverses every direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mirror {
     /// The parameter does not change.
@@ -16,68 +16,69 @@ pub enum Mirror {
     Negate,
 }
 
-/// Start value in a fit of a law in newtons.
+/// Quantity of the data from which a fit computes the start value of a parameter.
 ///
-/// No single scale suits both a watch and a press, so most parameters of such a law name the
-/// quantity of the data that gives their order of magnitude. A law that scales with the load has no
-/// forces of its own; with it the catalogue's values apply.
+/// Machines differ in size, from a watch to a press, so most parameters of a law in newtons have no
+/// common start value. The forces of other laws are proportional to the load; with these laws, the
+/// start values of the catalogue apply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The catalogue's values.
+    /// Start values of the catalogue.
     Catalogue,
-    /// Friction in motion.
+    /// Mean friction in motion.
     Kinetic,
-    /// Friction at the start of motion.
+    /// Friction at the start of motion (breakaway).
     Breakaway,
     /// Excess of friction at the start of motion over friction in motion.
     BreakawayExcess,
     /// Slope of friction over speed.
     Viscous,
-    /// A low speed, over which friction falls.
+    /// Low speed, over which friction falls (Stribeck speed).
     StribeckSpeed,
-    /// A typical speed.
+    /// Typical speed.
     UsualSpeed,
     /// Inverse of a typical speed.
     Slowness,
-    /// Friction per distance over which a contact deflects.
+    /// Friction divided by the distance over which a contact deflects.
     Stiffness,
-    /// A small share of a typical stroke.
+    /// Small fraction of a typical stroke.
     SlipDistance,
-    /// A small share of friction per typical speed.
+    /// Small fraction of friction divided by a typical speed.
     Damping,
-    /// A small share of friction in motion.
+    /// Small fraction of the friction in motion.
     Drag,
-    /// Pitches at which the force repeats along the travel.
+    /// Pitches (spatial periods) with which the force varies along the travel.
     Pitch,
-    /// Pitches at which the force in the direction of motion repeats.
+    /// Pitches (spatial periods) with which the force in the direction of motion varies.
     RipplePitch,
-    /// A share of the duration of a typical run.
+    /// Fraction of the duration of a typical run.
     RunTime,
-    /// Temperature at which the viscosity of the rig is valid, otherwise the mean recorded
+    /// Temperature for which the viscosity of the rig is given, otherwise the mean recorded
     /// temperature, C.
     ReferenceTemperature,
-    /// A small share of the largest recorded force.
+    /// Small fraction of the largest recorded force.
     CellPlay,
-    /// Nonlinearity of a load cell by a small share at the largest recorded force.
+    /// Cubic coefficient that corresponds to a small nonlinearity at the largest recorded force.
     CellCubic,
     /// Middle of the travel of the runs.
     StrokeMiddle,
     /// Half of the travel of the runs.
     StrokeHalf,
-    /// The catalogue's values, and values down to the resolution of a sample.
+    /// Start values of the catalogue, and smaller values down to a fraction of the sampling
+    /// interval.
     Lateness,
-    /// On a linear axis: a backlash of a small share of a stroke.
+    /// Backlash of a small fraction of a stroke, on a linear axis.
     DrivePlay,
-    /// On a linear axis: a drive that deflects by a small share of a stroke.
+    /// Stiffness of a drive that deflects by a small fraction of a stroke, on a linear axis.
     DriveStiffness,
-    /// On a linear axis: a drive that rings fast relative to a stroke.
+    /// Mass that oscillates fast relative to a stroke, on a linear axis.
     DriveInertia,
-    /// On a linear axis: a drive that damps at a typical speed.
+    /// Damping that is considerable at a typical speed, on a linear axis.
     DriveDamping,
 }
 
 impl Start {
-    /// Name used in files and in Python.
+    /// Returns the name used in files and in Python.
     pub const fn name(self) -> &'static str {
         match self {
             Start::Catalogue => "catalogue",
@@ -109,20 +110,19 @@ impl Start {
     }
 }
 
-/// Upper bound of a parameter in a fit, in addition to the catalogue's bounds.
+/// Upper bound of a parameter in a fit, in addition to the bounds of the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
     /// No additional bound.
     Catalogue,
-    /// The highest recorded speed.
+    /// Highest recorded speed, for the speed at which a film carries the whole load.
     ///
-    /// The parameter is the speed at which a film carries the load alone. Values far beyond the
-    /// record have no visible effect.
+    /// Values far above the recorded speeds have no visible effect.
     TransitionSpeed,
 }
 
 impl Bound {
-    /// Name used in files and in Python.
+    /// Returns the name used in files and in Python.
     pub const fn name(self) -> &'static str {
         match self {
             Bound::Catalogue => "catalogue",
@@ -131,7 +131,7 @@ impl Bound {
     }
 }
 
-/// One parameter of a law or an effect.
+/// Description of one parameter of a law or an effect.
 ///
 /// ```
 /// use jbf_core::page::{Mirror, Parameter};
@@ -148,31 +148,30 @@ pub struct Parameter {
     pub name: &'static str,
     /// Unit in conventional notation (`1/m`).
     pub unit: &'static str,
-    /// Meaning of the parameter.
+    /// Physical meaning of the parameter.
     pub meaning: &'static str,
-    /// Smallest value allowed.
+    /// Smallest permitted value.
     pub lower: f64,
-    /// Largest value allowed.
+    /// Largest permitted value.
     pub upper: f64,
-    /// Value at which the effect vanishes, if this parameter has one.
+    /// Value at which the effect vanishes, if there is one.
     pub null: Option<f64>,
-    /// Start values of a fit, likeliest first.
+    /// Start values of a fit, the most likely first.
     pub starts: &'static [f64],
-    /// True if a fit should use the logarithm of the parameter.
+    /// True if a fit uses the logarithm of the parameter.
     pub log: bool,
-    /// Period of an angle, for parameters that wrap.
+    /// Period of an angle that is periodic.
     pub period: Option<f64>,
-    /// Behaviour under reflection.
+    /// Behaviour under reflection of the machine.
     pub mirror: Mirror,
-    /// Start value in a fit of a law in newtons.
+    /// Quantity of the data from which a fit computes the start value.
     pub start: Start,
-    /// Upper bound in a fit.
+    /// Upper bound in a fit, in addition to `upper`.
     pub bound: Bound,
     /// True for a parameter that is specified instead of estimated.
     ///
-    /// A fit holds it at its start value, or at a value given by the user. It defines the terms of
-    /// other parameters (a reference), or belongs to a form with one parameter more than records
-    /// determine.
+    /// A fit holds such a parameter at its start value, or at a value given by the user. The
+    /// parameter is a reference for others, or records do not determine it in addition to them.
     pub stated: bool,
 }
 
@@ -202,7 +201,7 @@ impl Parameter {
         }
     }
 
-    /// Marks a scale: a fit uses its logarithm.
+    /// Marks the parameter as a positive quantity whose logarithm is fitted.
     pub const fn log(mut self) -> Self {
         self.log = true;
         self
@@ -214,40 +213,41 @@ impl Parameter {
         self
     }
 
-    /// Marks an angle that wraps.
+    /// Marks the parameter as an angle with a period.
     pub const fn period(mut self, period: f64) -> Self {
         self.period = Some(period);
         self
     }
 
-    /// Marks a parameter that changes sign under reflection.
+    /// Marks the parameter as one that changes sign under reflection.
     pub const fn signed(mut self) -> Self {
         self.mirror = Mirror::Negate;
         self
     }
 
-    /// Sets the quantity of the data that gives its order of magnitude.
+    /// Sets the quantity of the data from which a fit computes the start value.
     pub const fn start(mut self, start: Start) -> Self {
         self.start = start;
         self
     }
 
-    /// Marks a parameter that is specified instead of estimated.
+    /// Marks the parameter as one that is specified instead of estimated.
     pub const fn stated(mut self) -> Self {
         self.stated = true;
         self
     }
 
-    /// Sets the quantity of the data that bounds it.
+    /// Sets the quantity of the data that limits the parameter in a fit.
     pub const fn bound(mut self, bound: Bound) -> Self {
         self.bound = bound;
         self
     }
 }
 
-/// True if there is one value per parameter and each is within its bounds or at its null.
+/// Returns true if there is one value per parameter and each is within its bounds or at its null
+/// value.
 ///
-/// It can check constants at compile time.
+/// The function can check constants at compile time.
 pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
     if pages.len() != values.len() {
         return false;
@@ -268,7 +268,7 @@ pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
     true
 }
 
-/// Compares two names; usable at compile time.
+/// Returns true if two names are equal; usable at compile time.
 pub(crate) const fn same(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     if a.len() != b.len() {
@@ -284,12 +284,12 @@ pub(crate) const fn same(a: &str, b: &str) -> bool {
     true
 }
 
-/// Checks values against the bounds of their descriptions.
+/// Checks values against the bounds of their parameters.
 ///
-/// A null value is always allowed.
+/// The null value of a parameter is always valid.
 ///
 /// # Errors
-/// Names the first value that is missing or out of bounds.
+/// Reports the first value that is missing or out of bounds.
 pub(crate) fn in_bounds<T: Real>(pages: &[Parameter], values: &[T]) -> Result<(), ParameterError> {
     for (i, p) in pages.iter().enumerate() {
         let value = given(values, i, p.name)?.value();

@@ -1,24 +1,25 @@
-//! Path of a step during which the speed is linear, as pieces of constant direction.
+//! Path of a step with linear speed, divided into legs of constant direction.
 //!
-//! Friction reverses with the speed, so every path-dependent quantity needs the reversal.
+//! Friction reverses with the speed, so every quantity that depends on the path needs the instant
+//! of the reversal.
 
 use crate::motion::{crossing, JournalMotion};
 use crate::real::Real;
 
-/// One piece of the path in one direction.
+/// Leg of a step: the part in one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg<T> {
-    /// Direction: -1, 0 or +1.
+    /// Direction of motion: -1, 0 or +1.
     pub direction: T,
-    /// Length, m.
+    /// Length of the leg, m.
     pub distance_m: T,
-    /// Friction level at both ends, in the unit of the caller.
+    /// Friction level at both ends of the leg, in the unit of the caller.
     pub level: [T; 2],
 }
 
-/// Legs of a step: one, or two if the speed crosses zero.
+/// Divides a step into legs: one, or two if the speed crosses zero.
 ///
-/// `turning` returns the level at the moment of rest, from the fraction of the step before it.
+/// `turning` returns the friction level at the reversal, from the fraction of the step before it.
 #[inline(always)]
 pub(crate) fn legs<T: Real>(
     from: &JournalMotion<T>,

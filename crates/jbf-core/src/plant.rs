@@ -1,14 +1,13 @@
-//! Simulated shaft with a motor, an encoder and friction, for analysis: the plant that the thesis's
-//! own gains describe.
+//! Simulated shaft with a motor, an encoder and friction, for the analysis of control loops.
 //!
 //! ```text
 //! v' = -a v + b (u - F(v, ...)),   x' = v,   |u| <= limit
 //! ```
 //!
-//! F, in volts, is any law with any effects; it may be set-valued at v = 0. A step is implicit in
-//! F. First the shaft is tried at rest, where friction holds up to its level, and only the excess
-//! moves it (a proximal step, after Moreau 1988). It therefore sticks and does not chatter. Without
-//! friction a step is exact for a constant input.
+//! F, in volts, is the friction of any law with any effects, and may be set-valued at v = 0. A step
+//! is implicit in F: the first trial is at rest, and only a force above the friction level moves
+//! the shaft (a proximal step, after Moreau 1988). The shaft therefore sticks without chattering. A
+//! step without friction is exact for a constant input.
 //!
 //! Source: Cohn (1998), chapter 6 and Appendices D and E. The observer of Appendix E is the
 //! observer of this plant with a = 135 1/s, b = 457 rad/s^2/V; its feed-forward 0.295 is a/b.
@@ -24,25 +23,26 @@ use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Largest number of trials per step; a bristle requires three or four.
+/// Largest number of trial speeds per step; a bristle requires three or four.
 const MOST_TRIALS: u32 = 24;
 
-/// Absolute tolerance of the speed of a step, rad/s, and its relative tolerance.
+/// Absolute tolerance of the speed at the end of a step, rad/s; `NEAR` is the relative tolerance.
 ///
 /// The speed is solved again at every step, so errors do not accumulate.
 const NEAR_RAD_S: f64 = 1e-7;
 const NEAR: f64 = 1e-6;
 
-/// Speed, rad/s, that no shaft exceeds.
+/// Speed that no shaft exceeds, rad/s.
 ///
-/// If friction has no root, the shaft is held for the step. This happens if friction falls with
-/// speed more than the inertia of the shaft allows, or if a force is not finite.
+/// If no speed balances the friction, the shaft does not move in the step. This happens if friction
+/// falls with speed more than the inertia of the shaft allows, or if a force is not finite.
 const LOST_RAD_S: f64 = 1e9;
 
-/// Longest step at rest, s: the film closes slowly, so short steps are unnecessary.
+/// Longest step of the film during a rest, s; the film closes slowly, so short steps are
+/// unnecessary.
 const LONGEST_STANDING_S: f64 = 0.02;
 
-/// Motor and shaft.
+/// Motor and shaft of a control loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Drive {
@@ -52,15 +52,15 @@ pub struct Drive {
     pub input_rad_s2_v: f64,
     /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: f64,
-    /// Largest input, V.
+    /// Largest input voltage, V.
     pub limit_v: f64,
 }
 
 impl Drive {
-    /// Motor and shaft of the thesis.
+    /// Motor and shaft of Cohn (1998).
     ///
-    /// The thesis does not contain the friction scale: `volts_per_n` is fitted to the "none"
-    /// columns of its Tables 6.1 and 6.2, as `jbf control tables` does.
+    /// The friction scale is not given there: `volts_per_n` is fitted to the columns "none" of
+    /// Tables 6.1 and 6.2, as `jbf control tables` does.
     pub const THESIS: Self = Self {
         damping_1_s: 135.0,
         input_rad_s2_v: 457.0,
@@ -68,9 +68,9 @@ impl Drive {
         limit_v: 10.0,
     };
 
-    /// Creates a drive from its a (1/s) and b (rad/s^2/V).
+    /// Creates a drive from its damping a (1/s) and input gain b (rad/s^2/V).
     ///
-    /// The friction scale and the largest input are those of the thesis until they are set.
+    /// The friction scale and the largest input are those of Cohn (1998) until they are set.
     #[must_use]
     pub const fn new(damping_1_s: f64, input_rad_s2_v: f64) -> Self {
         Self {
@@ -85,22 +85,22 @@ impl Drive {
         with_limit_v => limit_v: f64,
     }
 
-    /// True if a and b are those of another drive.
+    /// Returns true if the damping and the input gain equal those of another drive.
     #[must_use]
     pub fn turns_like(&self, other: &Self) -> bool {
         self.damping_1_s == other.damping_1_s && self.input_rad_s2_v == other.input_rad_s2_v
     }
 
-    /// Twice the speed that the largest input sustains without friction, rad/s.
+    /// Returns twice the speed that the largest input sustains without friction, rad/s.
     ///
-    /// A higher speed is a jump of the encoder, not a motion of the shaft.
+    /// A higher speed is attributed to a jump of the encoder.
     #[must_use]
     pub fn top_speed_rad_s(&self) -> f64 {
         2.0 * self.limit_v * self.input_rad_s2_v / self.damping_1_s
     }
 }
 
-/// The plant with precomputed constants.
+/// Simulated shaft with a drive and a friction chain, with precomputed constants.
 #[derive(Clone, Copy, Debug)]
 pub struct Plant<T: Real, L, E = Effects<T>> {
     chain: Chain<T, L, E>,
@@ -111,38 +111,38 @@ pub struct Plant<T: Real, L, E = Effects<T>> {
     step_s: T,
 }
 
-/// State of the shaft.
+/// State of the simulated shaft.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
-    /// Angle, rad.
+    /// Angle of the shaft, rad.
     pub angle_rad: T,
-    /// Speed, rad/s.
+    /// Speed of the shaft, rad/s.
     pub speed_rad_s: T,
-    /// Friction, V; the holding force where the shaft sticks.
+    /// Friction, V; while the shaft sticks, the force that holds it.
     pub friction_v: T,
-    /// Extrapolated change of friction, V per step.
+    /// Extrapolated change of friction in the next step, V.
     change_v: T,
     time_s: T,
     chain: chain::State<T, S, E>,
 }
 
-/// Start of a step, and its inputs.
+/// State at the start of a step, and the inputs of the step.
 ///
-/// Each trial of a step starts from here and stores its end in [`State`].
+/// Each trial of a step starts from this state and stores its end in [`State`].
 struct Before<T: Real, S, E: EffectSet<T>> {
     chain: chain::State<T, S, E>,
     speed_rad_s: T,
     angle_rad: T,
-    /// Speed at the end without friction, rad/s.
+    /// Speed at the end of the step without friction, rad/s.
     free: T,
     load_n: T,
 }
 
 impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
-    /// Creates a plant with steps of `step_s`, at which the law's own stepper must be stable.
+    /// Creates a plant that advances by `step_s`, with which the law must be stable.
     ///
     /// # Errors
-    /// Names the number that is not positive and finite.
+    /// Reports the number that is not positive and finite.
     pub fn new(chain: Chain<T, L, E>, drive: Drive, step_s: f64) -> Result<Self, Error> {
         positive("damping_1_s", drive.damping_1_s)?;
         positive("input_rad_s2_v", drive.input_rad_s2_v)?;
@@ -160,9 +160,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         })
     }
 
-    /// Returns the state at rest at angle zero under a load (N), after a rest of `stood_s` (s).
+    /// Returns the state at angle zero under a load (N), after a rest of `stood_s`.
     ///
-    /// During the rest the film is squeezed out and the contact ages.
+    /// During the rest, the film is squeezed out and the contact ages.
     #[must_use]
     pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State, E> {
         let mut motion = Motion::at_rest(load_n);
@@ -186,7 +186,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         }
     }
 
-    /// Advances one step under an input (V) and a load (N).
+    /// Advances the shaft by one step under an input (V) and a load (N).
     #[inline]
     pub fn step(&self, state: &mut State<T, L::State, E>, input_v: T, load_n: T) {
         let u = input_v.max(-self.limit_v).min(self.limit_v);
@@ -212,7 +212,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         state.time_s += self.step_s;
     }
 
-    /// Tries a step that keeps its direction.
+    /// Computes a step in which the shaft continues in its direction.
     ///
     /// Returns false, and an invalid state, if there is no such step.
     #[inline]
@@ -230,7 +230,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         state.speed_rad_s * side > T::ZERO
     }
 
-    /// Tries a step that may stick: only the excess over friction at rest moves the shaft.
+    /// Computes a step that may stick: only a force above the friction at rest moves the shaft.
     #[inline]
     fn leave_rest(&self, state: &mut State<T, L::State, E>, before: &Before<T, L::State, E>) {
         let still = self.attempt(state, before, T::ZERO);
@@ -255,8 +255,10 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         }
     }
 
-    /// Finds the root of `v - free + gain F(v)` on one side of rest (on either side if `side` is
-    /// zero), by secants from a guess.
+    /// Finds the speed at which `v - free + gain F(v)` is zero, by the secant method.
+    ///
+    /// `guess` is the first trial (rad/s). The speed has the sign `side`, or any sign if `side` is
+    /// zero.
     #[inline]
     fn solve(
         &self,
@@ -289,7 +291,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
 
     /// Advances the chain from the start of the step to an end with the given speed.
     ///
-    /// Returns the friction there, V.
+    /// Returns the friction at the end of the step, V.
     #[inline]
     fn attempt(
         &self,

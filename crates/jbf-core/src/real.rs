@@ -1,20 +1,20 @@
 //! Scalar type of the physics: `f32`, `f64`, or a [`crate::Dual`] that carries derivatives along
 //! with the value.
 //!
-//! Every function uses `libm`, never the platform, so that the same input gives the same bits on a
-//! laptop and on a microcontroller.
+//! Every function uses `libm`, never the mathematical library of the platform, so that the same
+//! input gives the same bits on a laptop and on a microcontroller.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Seals [`Real`]: number types are defined only in the crates of this project, so that an
-/// additional operation does not break other code.
+/// Prevents other crates from implementing [`Real`], so that an additional operation does not break
+/// their code.
 #[doc(hidden)]
 pub mod sealed {
     pub trait Sealed {}
 }
 
-/// A real number type over which the models can be evaluated.
+/// Real number type with which the models can be evaluated.
 ///
 /// The trait is sealed: `f32`, `f64`, [`crate::Dual`], and the lanes of `jbf-batch` implement it.
 ///
@@ -44,28 +44,28 @@ pub trait Real:
     /// Largest eccentricity ratio that a state may hold: `1 - eps^2` must stay well above the
     /// rounding error of one.
     const EPS_LIMIT: Self;
-    /// True for a type that is one lane of a vector.
+    /// True for a type that represents one lane of a vector register.
     ///
-    /// Lanes must not diverge. A step that leaves the bearing is only marked and its state is
-    /// invalid; the caller must repeat it in a scalar type.
+    /// Lanes must not branch differently. A step that leaves the bearing is only marked, and its
+    /// state is invalid; the caller must repeat the step in a scalar type.
     const SIDE_BY_SIDE: bool = false;
     /// True for a type that carries derivatives.
     ///
-    /// A function of many operations and few inputs then computes its partial derivatives in plain
-    /// numbers and joins them once, by [`Real::joined`]. Otherwise every operation would carry all
-    /// of them.
+    /// A function of many operations and few inputs then computes its partial derivatives with
+    /// respect to the inputs, and combines them once with [`Real::joined`]. Otherwise every
+    /// operation would carry all derivatives.
     const HAS_SLOPES: bool = false;
 
-    /// Nearest number of this type, with zero derivatives.
+    /// Converts a value to the nearest number of this type, with zero derivatives.
     fn of(value: f64) -> Self;
-    /// Value without derivatives.
+    /// Returns the value without derivatives.
     fn value(self) -> f64;
     /// Converts a whole number, without double precision on a target that lacks it.
     #[inline]
     fn from_i32(value: i32) -> Self {
         Self::of(f64::from(value))
     }
-    /// Largest whole number not above the value; the nearest `i32` where none fits.
+    /// Returns the largest whole number not above the value, limited to the range of `i32`.
     #[inline]
     fn floor_i32(self) -> i32 {
         libm::floor(self.value()) as i32
@@ -74,7 +74,7 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Exponential.
     fn exp(self) -> Self;
-    /// Computes `exp(self) - 1`, accurate for small `self` too.
+    /// Computes `exp(self) - 1`, also accurately for small `self`.
     fn exp_m1(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
@@ -84,21 +84,23 @@ pub trait Real:
     fn cos(self) -> Self;
     /// Raises `self` to the power `exponent`, for a positive base.
     fn powf(self, exponent: Self) -> Self;
-    /// Absolute value; the derivative at zero is taken as that of `+self`.
+    /// Absolute value; the derivative at zero is that of `+self`.
     fn abs(self) -> Self;
 
-    /// Root `value` of `residual(x) = 0` with the derivatives of the implicit function theorem.
+    /// Returns the root `value` of `residual(x) = 0` with derivatives by the implicit function
+    /// theorem.
     ///
     /// `residual` is evaluated at the root; `slope` is its derivative with respect to the unknown.
     fn implicit(value: f64, residual: Self, slope: f64) -> Self;
 
-    /// Multiplies by a plain number.
+    /// Multiplies by a number without derivatives.
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * Self::of(factor)
     }
 
-    /// Returns `value` with the derivatives of its inputs times the given partial derivatives.
+    /// Returns `value` with derivatives by the chain rule, from inputs and the partial derivatives
+    /// with respect to them.
     #[inline(always)]
     fn joined<const K: usize>(value: f64, inputs: [(Self, f64); K]) -> Self {
         let _ = inputs;
@@ -137,7 +139,7 @@ pub trait Real:
         }
     }
 
-    /// True for a finite value.
+    /// Returns true if the value is finite.
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.value().is_finite()

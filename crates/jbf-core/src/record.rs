@@ -1,4 +1,4 @@
-//! A recorded run as slices: the imposed motion at each sample.
+//! Recorded run as slices: the imposed motion at each sample.
 
 use crate::motion::Motion;
 use crate::real::Real;
@@ -14,7 +14,7 @@ pub struct Record<'a> {
     pub acceleration_m_s2: &'a [f64],
     /// Shaft angle, unwrapped, rad.
     pub angle_rad: &'a [f64],
-    /// Angle over which a weight acts minus the shaft angle, rad; zero without it.
+    /// Angle of the weight minus the shaft angle, rad; zero if it is `None`.
     pub weight_offset_rad: Option<&'a [f64]>,
     /// Load on one bearing, N.
     pub load_n: &'a [f64],
@@ -23,13 +23,13 @@ pub struct Record<'a> {
 }
 
 impl Record<'_> {
-    /// Motion at sample `i`; `None` beyond the shortest slice.
+    /// Returns the motion at sample `i`; `None` beyond the shortest slice.
     #[inline(always)]
     pub fn motion<T: Real>(&self, i: usize) -> Option<Motion<T>> {
         Some(self.sample(i)?.lift())
     }
 
-    /// Motion at sample `i` in plain numbers.
+    /// Returns the motion at sample `i` without derivatives; `None` beyond the shortest slice.
     #[inline(always)]
     pub(crate) fn sample(&self, i: usize) -> Option<Motion<f64>> {
         Some(Motion {

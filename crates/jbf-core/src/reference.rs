@@ -1,4 +1,4 @@
-//! Reference of the control loop: sine, triangle and square as in the thesis's programs.
+//! Reference of the control loop: sine, triangle and square wave as in the programs of Cohn (1998).
 //!
 //! ```text
 //! sine      (high + low + (high - low) sin(w t - p)) / 2,  p = asin((high + low)/(high - low))
@@ -12,23 +12,23 @@
 use crate::error::{check, finite, positive, Error};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-/// Shape of a periodic reference.
+/// Waveform of a periodic reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Wave {
-    /// Sine.
+    /// Sine wave.
     Sine,
-    /// Triangle.
+    /// Triangle wave.
     Triangle,
-    /// Square.
+    /// Square wave.
     Square,
 }
 
 impl Wave {
-    /// All waves.
+    /// All waveforms.
     pub const ALL: [Self; 3] = [Self::Sine, Self::Triangle, Self::Square];
 
-    /// Name used in options.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Wave::Sine => "sine",
@@ -37,25 +37,25 @@ impl Wave {
         }
     }
 
-    /// Returns the wave with this name.
+    /// Returns the waveform with this name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|wave| wave.name() == name)
     }
 }
 
-/// A point of a reference.
+/// Value of a reference at one instant, with its rate of change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Target<T> {
-    /// Reference value: rad, or rad/s for velocity control.
+    /// Reference value: rad for position control, rad/s for velocity control.
     pub value: T,
-    /// Rate of change of the value, 1/s; zero across a jump.
+    /// Rate of change of the value, per second; zero at a jump.
     pub rate: T,
 }
 
-/// A periodic reference, computed in double precision.
+/// Periodic reference of a control loop, computed in double precision.
 ///
-/// A microcontroller takes its points from a table or from a host.
+/// A microcontroller takes its values from a table or from a host.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
     wave: Wave,
@@ -66,7 +66,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Creates a wave between `low` and `high` at a frequency (rad/s), with the thesis's phase.
+    /// Creates a wave between `low` and `high` at a frequency (rad/s), with the phase of the
+    /// programs of Cohn (1998).
     ///
     /// # Errors
     /// The frequency must be positive, `high` above `low`, both finite.
@@ -93,12 +94,12 @@ impl Reference {
         })
     }
 
-    /// Period, s.
+    /// Returns the period, s.
     pub fn period_s(&self) -> f64 {
         TAU / self.frequency_rad_s
     }
 
-    /// Value and rate at a time, s.
+    /// Returns the value and its rate of change at a time, s.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Target<f64> {
         let (span, period) = (self.high - self.low, self.period_s());

@@ -1,15 +1,16 @@
-//! Exact solution of `y' = (x - y) / tau` for a linear input.
+//! Exact solution of the first-order relaxation `y' = (x - y) / tau` for a linear input.
 //!
-//! It is the common part of a low pass, a warming film and a bristle, and stable for any step.
+//! Low-pass filters, the temperature of a film and bristles use this solution, which is stable for
+//! any step.
 
 use crate::real::Real;
 
-/// Value of `y` after a step of `ratio = dt / tau` during which the input goes from `x[0]` to
-/// `x[1]`.
+/// Returns `y` after a step of `ratio = dt / tau` in which the input changes linearly from `x[0]`
+/// to `x[1]`.
 ///
-/// Short steps are computed as an increment of `y`, long ones as a distance from `x[1]`. The other
-/// form of each would suffer cancellation: in single precision a quantity that can only warm up
-/// would become negative.
+/// For short steps, the increment of `y` is computed; for long steps, the distance from `x[1]`.
+/// Each formula would suffer from cancellation in the other case: in single precision, a
+/// temperature rise that is never negative would become negative.
 #[inline(always)]
 pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
     let gain = -(-ratio).exp_m1();
@@ -20,7 +21,7 @@ pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
     }
 }
 
-/// Computes `1 - gain / ratio`, by its series where the difference would cancel.
+/// Computes `1 - gain / ratio`, by its series if the difference would suffer from cancellation.
 #[inline(always)]
 fn lead<T: Real>(ratio: T, gain: T) -> T {
     if ratio.value() < 1e-3 {
@@ -67,7 +68,7 @@ mod tests {
         assert!(relax(5.0_f32, [1.0, 1.0], 1e30).is_finite());
     }
 
-    /// Non-negative inputs never give a negative result, including rounding.
+    /// The result for non-negative inputs is not negative, including rounding.
     #[test]
     fn relaxation_of_non_negative_inputs_is_not_negative() {
         for power in -80..20 {

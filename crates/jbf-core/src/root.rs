@@ -1,9 +1,9 @@
 //! Square root on every target.
 //!
 //! For single precision `libm` uses the hardware on x86-64 and 64-bit Arm. On a Cortex-M with a
-//! floating-point unit it needs about sixty integer operations, and stable Rust without `std`
-//! offers no other access to the instruction. The compiler knows C's `sqrtf`: it emits the
-//! instruction, and calls the function only for a negative number.
+//! floating-point unit, `libm` needs about sixty integer operations, and stable Rust without `std`
+//! offers no other access to the hardware instruction. For a call of the C function `sqrtf`, the
+//! compiler emits the instruction, and calls the function only for a negative number.
 //!
 //! With the feature `std` the standard library's function is used. IEEE 754 rounds a root
 //! correctly, so the bits are identical on every target.

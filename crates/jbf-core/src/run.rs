@@ -1,4 +1,5 @@
-//! Prediction of a whole recorded run by a chain, with inner steps between the samples.
+//! Prediction of the friction along a whole record by a signal chain, with inner steps between the
+//! samples.
 
 use crate::chain::{Chain, State, SHORTEST_STEP_S};
 use crate::effect::{EffectSet, Rig, Signal};
@@ -8,23 +9,24 @@ use crate::real::Real;
 
 pub use crate::record::Record;
 
-/// Shortest inner step of a film, s.
+/// Shortest inner step that a film may require, s.
 ///
-/// It bounds the time of a search with parameters outside the physical range. Explicit steps of
-/// this length are stable for films of up to 28,000 1/s. A faster film is limited to the inside of
-/// the bearing, which its state reports.
+/// It limits the time of a search with parameters outside the physical range. Explicit steps of
+/// this length are stable for films with rates up to 28,000 1/s. The eccentricity of a faster film
+/// is limited in each step, and its state reports the number of such steps.
 pub const SHORTEST_FILM_STEP_S: f64 = 1e-4;
 
-/// Largest rate of a film, 1/s, that steps of [`SHORTEST_FILM_STEP_S`] resolve; see
+/// Largest rate of a film that steps of [`SHORTEST_FILM_STEP_S`] resolve, 1/s; see
 /// [`film_rate_1_s`].
 pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 
-/// Runs `chain` along `record` with inner steps of at most `max_step_s`, and passes the reading (N)
-/// of each sample to `sink` with its index.
+/// Predicts the reading of the instrument (N) at each sample of a record, with inner steps of at
+/// most `max_step_s`.
 ///
-/// Steps are shorter where the law requires it, down to [`SHORTEST_FILM_STEP_S`], and land on every
-/// reversal. A motion that starts or stops between two samples requires an additional sample at that
-/// instant; without it the motion starts or stops at the sample.
+/// `sink` receives the index of each sample and its reading. The inner steps are shorter if the law
+/// requires it, down to [`SHORTEST_FILM_STEP_S`], and end at every reversal. For a motion that
+/// starts or stops between two samples, the record must contain a sample at that instant; otherwise
+/// the motion starts or stops at the next sample.
 ///
 /// The function is inlined into its caller, so that a caller compiled for a wider instruction set
 /// includes all of it.
@@ -38,19 +40,20 @@ pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
     predict_by(chain, record, max_step_s, Steps::Every, sink);
 }
 
-/// Inner steps that a chain makes between two samples.
+/// Selection of the inner steps between two samples that a chain computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
-    /// Every step.
+    /// All inner steps.
     Every,
-    /// Only the last step before a sample.
+    /// Only the last inner step before each sample.
     ///
-    /// The others change no reading of a chain without memory ([`EffectSet::remembers`],
+    /// The other steps do not change a reading of a chain without memory ([`EffectSet::remembers`],
     /// [`crate::film_path::OnPath`]).
     Last,
 }
 
-/// As [`predict`], with all steps or only the last ones.
+/// Predicts the readings along a record like [`predict`], with all inner steps or only the last one
+/// before each sample.
 #[inline(always)]
 pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
@@ -89,11 +92,11 @@ pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     }
 }
 
-/// Fastest rate, 1/s, at which the law's film responds to this record; zero for a law without a
+/// Fastest rate at which the film of the law responds along a record, 1/s; zero for a law without a
 /// film.
 ///
-/// Beyond [`FASTEST_FILM_1_S`] a prediction limits the film to the inside of the bearing and does
-/// not resolve it.
+/// Above [`FASTEST_FILM_1_S`], a prediction limits the eccentricity of the film and does not
+/// resolve its dynamics.
 pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -101,11 +104,11 @@ pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     1.0 / film_step_s(chain, record)
 }
 
-/// Longest inner step, s, of [`predict`]: at most `max_step_s`, shorter where the film or an effect
-/// requires it.
+/// Longest inner step of [`predict`] along a record, s: `max_step_s`, or less if the film or an
+/// effect requires it.
 ///
-/// It is infinite (one step per sample) if law and effects have no memory. Runs of one record with
-/// equal inner steps have the same instants.
+/// The result is infinite (one step per sample) if law and effects have no memory. Predictions of
+/// one record with equal inner steps have the same instants.
 pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -121,9 +124,9 @@ pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     max_step_s.min(law_s).min(chain.effects.longest_step_s())
 }
 
-/// Number of inner steps of [`predict`] along a record, to within one per sample and reversal.
+/// Number of inner steps of [`predict`] along a record, a measure of the computing time.
 ///
-/// It measures the cost.
+/// The number is accurate to one per sample and reversal.
 pub fn inner_steps<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -133,7 +136,7 @@ pub fn inner_steps<T: Real, L: Law<T>, E: EffectSet<T>>(
     samples * (1.0 + step_s(record) / inner_step_s(chain, record, max_step_s))
 }
 
-/// Mean sampling interval, s.
+/// Mean sampling interval of a record, s.
 fn step_s(record: &Record<'_>) -> f64 {
     match record.time_s {
         [first, .., last] => (last - first) / (record.time_s.len() - 1) as f64,
@@ -141,7 +144,7 @@ fn step_s(record: &Record<'_>) -> f64 {
     }
 }
 
-/// Longest step, s, that resolves the film.
+/// Longest step that resolves the film along a record, s.
 fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -153,10 +156,10 @@ fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain.longest_film_step_s(record, top) / chain.effects.fastest_film()
 }
 
-/// Computes the readings (N) of the instrument alone for a force (N) at times (s).
+/// Computes the readings (N) of the instrument for a force (N) given at times (s).
 ///
-/// The force is linear between the samples, and only the instrument effects act. Each reading is
-/// passed to `sink` with its index.
+/// The force is linear between the samples, and only the instrument effects act. `sink` receives
+/// the index of each sample and its reading.
 pub fn read_force<T: Real>(
     effects: &impl EffectSet<T>,
     time_s: &[f64],
@@ -195,9 +198,9 @@ pub fn read_force<T: Real>(
     }
 }
 
-/// Instant between two samples at which the speed crosses zero, if it changes sign.
+/// Motion at the reversal between two samples; `None` if the speed does not change sign.
 ///
-/// Friction jumps there, so a step must land on it.
+/// Friction jumps at a reversal, so a step must end there.
 #[inline(always)]
 fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
     let share = crossing(from.velocity_m_s, to.velocity_m_s)?;
@@ -206,7 +209,8 @@ fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motio
     Some(zero)
 }
 
-/// Makes equal inner steps from one motion to the next, starting with step `first`.
+/// Advances a chain from one motion to the next in `steps` equal inner steps, starting with step
+/// `first`.
 ///
 /// The imposed motion has no derivatives and is converted from plain numbers in each step.
 #[inline(always)]

@@ -1,7 +1,8 @@
-//! Construction of a chain from names and lists of values.
+//! Construction of a signal chain from the names of its law and effects, and the values of their
+//! parameters.
 //!
-//! Files, Python and fingerprints use this form: names of the law and the effects, and their
-//! parameters in the order of their descriptions.
+//! Files, Python and fingerprints use this form. Values are in the order of the descriptions of the
+//! parameters.
 
 use crate::bearing::Bearing;
 use crate::chain::Chain;
@@ -11,27 +12,27 @@ use crate::error::ParameterError;
 use crate::law::{with_law, Named, Visitor};
 use crate::real::Real;
 
-/// Arguments from which a law is built.
+/// Name of a law with the arguments of its constructor.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec<'a, T> {
     /// Name of the law.
     pub law: &'a str,
     /// Parameters of the law, in the order of its description.
     pub values: &'a [T],
-    /// Bearing; a law in newtons needs none.
+    /// Bearing of the law; `None` for a law in newtons.
     pub bearing: Option<&'a Bearing>,
-    /// Load on one bearing, N, for a law that needs it.
+    /// Load on one bearing, N; `None` for a law in newtons.
     pub load_n: Option<f64>,
-    /// Clock of a law with a film.
+    /// Time scale of the film; ignored by a law without a film.
     pub clock: Clock,
 }
 
-/// Operation on a chain of any law.
+/// Operation on a chain whose law is selected by name at run time.
 pub trait Using<T: Real> {
     /// Result of the operation.
     type Output;
 
-    /// Performs the operation.
+    /// Performs the operation on a chain.
     fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output;
 }
 
@@ -51,11 +52,11 @@ impl<T: Real, U: Using<T>> Visitor<T> for Round<'_, T, U> {
 }
 
 impl<T: Real> Spec<'_, T> {
-    /// Builds the law, adds the effects, and passes the chain to `then`.
+    /// Creates the law, adds the effects, and passes the chain to the operation `then`.
     ///
     /// # Errors
-    /// Names the first number that violates its rule, those of effects before those of the law, or
-    /// reports that there is no such effect or law.
+    /// Reports the first number that violates its rule, first for the effects and then for the law,
+    /// or an unknown name of an effect or a law.
     pub fn chain<'e, V: AsRef<[T]>, U: Using<T>>(
         &self,
         effects: impl IntoIterator<Item = (&'e str, V)>,

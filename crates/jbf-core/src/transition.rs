@@ -1,4 +1,5 @@
-//! Transition eccentricity eps_tr, at which the asperities first touch, equation (3.20).
+//! Transition eccentricity eps_tr, at which asperity contact begins, equation (3.20) of Cohn
+//! (1998).
 
 use crate::real::Real;
 use crate::root::sqrt;
@@ -7,9 +8,9 @@ use core::f64::consts::PI;
 /// Solves `4 Fb^2 = eps^2 [ pi^2 / (4 d^3) + 4 eps^2 / d^4 ]`, `d = 1 - eps^2`, for eps.
 ///
 /// In the unknown d this is the polynomial `(1 - d)(4 - a d) = 4 Fb^2 d^4` with `a = 4 - pi^2 / 4`.
-/// Its left side falls and its right side rises on (0, 1), so there is one root. It is found by
-/// Newton steps inside a shrinking bracket. `load_number` must be positive; derivatives with
-/// respect to it are propagated.
+/// The left side falls and the right side rises on (0, 1), so there is one root, which Newton steps
+/// inside a shrinking bracket find. `load_number` must be positive; derivatives with respect to it
+/// are propagated.
 pub fn transition_eccentricity<T: Real>(load_number: T) -> T {
     let a = 4.0 - PI * PI / 4.0;
     let fb = load_number.value();
@@ -50,7 +51,8 @@ mod tests {
     use super::*;
     use crate::Dual;
 
-    /// Load numbers and roots of Tables 4.2 to 4.5, computed independently.
+    /// Transition eccentricities of Tables 4.2 to 4.5 of Cohn (1998) equal values computed
+    /// independently from their load numbers.
     #[test]
     fn transition_eccentricity_matches_the_four_tables() {
         let reference = [

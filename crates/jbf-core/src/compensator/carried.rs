@@ -1,7 +1,7 @@
 //! Friction models for use inside a compensator.
 //!
-//! The speed of the shaft drives the model. The model returns the friction in volts, separated into
-//! the part with the sign of the motion and the rest.
+//! The input of a model is the speed of the shaft. The output is the friction in volts, separated
+//! into the part with the sign of the motion and the remaining part.
 
 use crate::chain::{self, Chain};
 use crate::effect::{EffectSet, Effects};
@@ -10,7 +10,7 @@ use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// A friction model in a control loop.
+/// Friction model that a compensator evaluates in a control loop.
 pub trait Carried<T: Real> {
     /// State of the model.
     type State: Copy;
@@ -21,13 +21,14 @@ pub trait Carried<T: Real> {
     /// Advances the state by `dt_s` to a speed (rad/s) and an angle (rad).
     fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T);
 
-    /// Friction at the speed of the last [`Carried::advance`], V.
+    /// Returns the friction at the speed of the last [`Carried::advance`], V.
     fn friction(&self, state: &Self::State) -> Friction<T>;
 
-    /// Slope of [`Friction::smooth`] between rest and a speed (rad/s, not zero), V s/rad.
+    /// Returns the slope of [`Friction::smooth`] between rest and a speed (rad/s, not zero), V
+    /// s/rad.
     ///
-    /// It is the viscous part alone, without weight or spring, and is not negative. The default is
-    /// zero. If a model with steep viscous friction returns zero, an observer rings.
+    /// The slope includes viscous friction only, not a weight or a spring, and is not negative. The
+    /// default is zero. An observer oscillates if a model with steep viscous friction returns zero.
     #[inline]
     fn slope(&self, state: &Self::State, velocity_rad_s: T) -> T {
         let _ = (state, velocity_rad_s);
@@ -35,9 +36,9 @@ pub trait Carried<T: Real> {
     }
 }
 
-/// A friction law without effects: the smallest and fastest model.
+/// Friction model that is a law without effects, the smallest and fastest model.
 ///
-/// A law with a bristle is treated as if it slid immediately.
+/// A bristle of the law is assumed to slide at once.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Bare<T, L> {
@@ -65,7 +66,7 @@ impl<T: Real, L> Bare<T, L> {
     }
 }
 
-/// State of a law, and the last speed.
+/// State of a law, and the speed at the last step.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<T, S> {
     law: S,
@@ -109,11 +110,11 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
     }
 }
 
-/// A complete chain: a law with the effects of a fitted model.
+/// Friction model that is a chain: a law with the effects of a fitted model.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Whole<T: Real, L, E = Effects<T>> {
-    /// The chain.
+    /// Law with its effects.
     pub chain: Chain<T, L, E>,
     /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: T,

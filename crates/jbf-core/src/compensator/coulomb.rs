@@ -7,22 +7,23 @@ use crate::observer::coulomb::{CoulombObserver, State};
 use crate::plant::Drive;
 use crate::real::Real;
 
-/// Compensator `F_hat = a_hat sgn(v_hat)`.
+/// Compensator `F_hat = a_hat sgn(v_hat)` with an estimated friction level `a_hat` and the
+/// estimated speed `v_hat`.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Coulomb<T> {
-    /// The observer.
+    /// Observer that estimates the friction level.
     pub observer: CoulombObserver<T>,
-    /// The plant's damping `a`, 1/s.
+    /// Damping `a` of the plant, 1/s.
     pub damping_1_s: T,
-    /// The plant's input gain `b`, rad/s^2/V.
+    /// Input gain `b` of the plant, rad/s^2/V.
     pub input_rad_s2_v: T,
-    /// Initial level, V: zero, or the level that an earlier run learned.
+    /// Initial friction level, V: zero, or the level that an earlier run estimated.
     pub start_v: T,
 }
 
 impl<T: Real> Coulomb<T> {
-    /// Creates a compensator from an observer and the drive.
+    /// Creates a compensator from an observer and the damping and input gain of a drive.
     #[must_use]
     pub fn new(observer: CoulombObserver<T>, drive: &Drive) -> Self {
         Self {
@@ -33,7 +34,8 @@ impl<T: Real> Coulomb<T> {
         }
     }
 
-    /// Starts from the level (V) that an earlier run learned, limited to the observer's range.
+    /// Starts from the friction level (V) that an earlier run estimated, limited to the range of
+    /// the observer.
     #[must_use]
     pub fn resumed(mut self, level_v: T) -> Self {
         self.start_v = level_v;

@@ -1,8 +1,8 @@
 //! Friction compensators, one per file.
 //!
-//! A compensator computes, from the signals of the loop, the voltage that cancels friction.
-//! Configuration is in the compensator, variables are in `State`. [`crate::controller`] runs a
-//! compensator in a loop.
+//! A compensator computes the voltage that cancels friction from the signals of the control loop.
+//! The compensator contains the configuration, and `State` the variables. [`crate::controller`]
+//! runs a compensator in a loop.
 
 pub mod carried;
 pub mod coulomb;
@@ -24,11 +24,11 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct Sense<T> {
-    /// Angle since the start, rad.
+    /// Angle since the start of the loop, rad.
     pub angle_rad: T,
     /// Speed estimate, rad/s.
     pub velocity_rad_s: T,
-    /// Controlled quantity minus its reference, rad or rad/s.
+    /// Control error: controlled quantity minus its reference, rad or rad/s.
     pub error: T,
     /// Reference speed, rad/s.
     pub wanted_rad_s: T,
@@ -36,29 +36,30 @@ pub struct Sense<T> {
     pub wanted_rad_s2: T,
     /// Output of the control law before compensation, V.
     pub base_v: T,
-    /// False while the loop is saturated or blind; the compensator must not learn then.
+    /// False while the output is saturated or the encoder is considered faulty; the compensator
+    /// must not learn then.
     pub may_learn: bool,
 }
 
-/// Output of a compensator, with its parts for logging.
+/// Output of a compensator, with its components for logging.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Answer<T> {
-    /// Voltage to add to the output of the control law, V.
+    /// Voltage that is added to the output of the control law, V.
     pub sum_v: T,
     /// Estimated friction, with the sign of the motion, V.
     pub friction_v: T,
-    /// Part of the estimated friction that an observer added to a model, V.
+    /// Part of the estimated friction that an observer adds to the prediction of a model, V.
     pub correction_v: T,
     /// Voltage that does not compensate friction: feedforward of the reference motion, V.
     pub forward_v: T,
-    /// Up to two learned values, whose meaning depends on the compensator.
+    /// Up to two learned values; their meaning depends on the compensator.
     pub learned: [T; 2],
 }
 
 impl<T: Real> Answer<T> {
-    /// Output of zero.
+    /// Creates an output of zero.
     #[must_use]
     pub fn nothing() -> Self {
         Self {
@@ -70,7 +71,8 @@ impl<T: Real> Answer<T> {
         }
     }
 
-    /// Output that consists of the estimated friction (V) only, reported with the learned values.
+    /// Creates an output that consists of the estimated friction (V) only, with the learned values
+    /// for logging.
     #[inline]
     #[must_use]
     pub fn of(friction_v: T, learned: [T; 2]) -> Self {
@@ -101,14 +103,15 @@ pub trait Compensator<T: Real> {
     /// State of the compensator.
     type State: Copy;
 
-    /// Returns the state at the start of a run; it also serves as the reset.
+    /// Returns the state at the start of a run, also for a reset.
     fn start(&self) -> Self::State;
 
-    /// Returns the speed estimate; a compensator with its own observer replaces the loop's
-    /// estimate.
+    /// Returns the speed estimate for the loop, rad/s.
     ///
-    /// `moved_rad` is the motion of the shaft since the previous step and `applied_v` the voltage
-    /// applied during it. `blind` is true while the encoder is not trusted.
+    /// The default returns `velocity_rad_s`, the estimate of the loop; a compensator with its own
+    /// observer returns that of the observer. `moved_rad` is the rotation of the shaft since the
+    /// previous step, and `applied_v` the voltage during it. `blind` is true while the encoder is
+    /// considered faulty.
     #[inline]
     fn observe(
         &self,
@@ -122,16 +125,16 @@ pub trait Compensator<T: Real> {
         velocity_rad_s
     }
 
-    /// True where the compensator's observer infers that the shaft turned without a count.
+    /// Returns true if the compensator's observer infers that the shaft turned without a count.
     ///
-    /// The encoder is then not trusted. The default is false.
+    /// The encoder is then considered faulty. The default is false.
     #[inline]
     fn doubts(&self, state: &Self::State) -> bool {
         let _ = state;
         false
     }
 
-    /// Computes the output of one step.
+    /// Computes the output of the compensator for one step and updates its state.
     #[must_use]
     fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
 }

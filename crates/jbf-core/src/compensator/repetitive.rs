@@ -1,11 +1,13 @@
-//! Repetitive compensation: learns the correction of a periodic task from lap to lap.
+//! Repetitive compensation: learns the correction of a periodic task from one period (lap) to the
+//! next.
 //!
 //! ```text
 //! u_r(phase) <- Q [ u_r(phase) ] - g e(phase + lead)
 //! ```
 //!
-//! Here Q is a three-point smoothing of zero phase. It prevents the growth of high frequencies,
-//! which a lap cannot teach. The lap has `N` cells and is interpolated linearly between them.
+//! Here Q is a three-point zero-phase smoothing filter. The filter prevents the growth of high
+//! frequencies, which cannot be learned. The lap has `N` cells and is interpolated linearly between
+//! them.
 //!
 //! Source: Tung, Anwar & Tomizuka (1993); Tomizuka, Tsao & Chew (1989) for Q; Cohn (1998), section
 //! 2.4.1.
@@ -14,20 +16,21 @@ use super::{Answer, Compensator, Sense};
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
-/// Compensator that learns from lap to lap.
+/// Compensator that learns a periodic correction of `N` values from the control error of each lap.
 #[derive(Clone, Copy, Debug)]
 pub struct Repetitive<T, const N: usize> {
     gain: T,
     smooth: T,
     cell_per_step: f32,
-    /// Inverse of the number of steps per cell; the mean error of a cell updates it.
+    /// Inverse of the number of steps per cell, the weight of one error in the mean error of a
+    /// cell.
     inverse_steps: T,
     steps_per_lap: u32,
     lead_cells: u32,
     limit_v: T,
 }
 
-/// Memory of the lap, V, and the position of the loop in it.
+/// Learned correction over the lap, V, and the position in the lap.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -46,15 +49,16 @@ pub struct State<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Repetitive<T, N> {
-    /// Creates a compensator for a lap of `steps_per_lap` steps.
+    /// Creates a compensator for a lap of `steps_per_lap` steps of `dt_s`.
     ///
     /// - `gain`: learning gain, V per unit of error and lap.
     /// - `smooth`: smoothing, 0 to 0.5.
-    /// - `lead_s`: delay of the plant's response, s.
+    /// - `lead_s`: delay between the output and its effect on the error, s.
     /// - `limit_v`: largest value of a cell, V.
     ///
     /// # Errors
-    /// Names the number that violates its rule. A lap must have at least as many steps as cells.
+    /// Reports the name of the number that violates its rule. A lap must have at least as many
+    /// steps as cells.
     pub fn new(
         steps_per_lap: u32,
         gain: f64,
@@ -93,7 +97,7 @@ impl<T: Real, const N: usize> Repetitive<T, N> {
         })
     }
 
-    /// Updates a cell from the mean error in the cell just left.
+    /// Updates the learned correction from the mean control error in `cell`.
     #[inline]
     fn teach(&self, state: &mut State<T, N>, cell: u32, error: T) {
         let n = N as u32;

@@ -1,4 +1,4 @@
-//! Look-up table of friction against speed or against the angle of a turn.
+//! Compensation by a look-up table of friction against speed or against the angle within a turn.
 //!
 //! Values between the entries are interpolated linearly.
 //!
@@ -13,13 +13,13 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Axis {
-    /// Absolute speed, from zero; the last entry holds beyond the end of the table.
+    /// Absolute speed, from zero; the last entry applies to all higher speeds.
     Speed,
-    /// Angle; the table is one period and repeats.
+    /// Angle; the table covers one period and repeats.
     Angle,
 }
 
-/// `N` friction levels, V, at equal intervals.
+/// Look-up table of `N` friction levels (V) at equal intervals.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<T, const N: usize> {
     level_v: [T; N],
@@ -49,7 +49,7 @@ impl<T: Real, const N: usize> Table<T, N> {
         })
     }
 
-    /// Level at a speed (rad/s) or an angle (rad), V.
+    /// Returns the friction level at a speed (rad/s) or an angle (rad), V.
     #[inline]
     #[must_use]
     pub fn at(&self, place: T) -> T {

@@ -1,31 +1,31 @@
-//! Limits beyond which a loop no longer trusts its encoder or compensation.
+//! Limits beyond which a control loop considers its encoder faulty or stops compensation.
 
 use crate::builder::with_fields;
 use crate::error::{check, positive, Error};
 
-/// A patience longer than any run.
+/// A time limit longer than any run, s.
 const ENDLESS_S: f64 = 1e5;
 
-/// Limits beyond which a loop no longer trusts its encoder or compensation.
+/// Limits beyond which a control loop considers its encoder faulty or stops compensation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// Largest output, V.
+    /// Largest output voltage, V.
     pub output_v: f64,
-    /// Voltage that certainly moves the shaft, V; a counter that does not change under it is
-    /// frozen.
+    /// Voltage that certainly moves the shaft, V. A counter that does not change under this voltage
+    /// is reported as frozen.
     pub moving_v: f64,
-    /// Time limit of three conditions, s.
+    /// Time after which the loop reacts to a fault or to its end, s.
     ///
-    /// After this time an unchanged counter counts as frozen, and a saturated output gives up
-    /// compensation. After this time, too, a loop whose encoder recovered resumes compensation.
+    /// After this time, an unchanged counter is reported as frozen, compensation stops if the
+    /// output is saturated, and compensation resumes if the encoder works again.
     pub patience_s: f64,
 }
 
 impl Limits {
-    /// Limits of a loop that only a jump of the counter stops, as in the thesis's programs.
+    /// Creates limits for a loop in which only a jump of the counter is a fault, as in Cohn (1998).
     ///
-    /// The voltage that moves the shaft and the patience must be set separately.
+    /// The voltage that moves the shaft and the time limit must be set separately.
     #[must_use]
     pub const fn new(output_v: f64) -> Self {
         Self {

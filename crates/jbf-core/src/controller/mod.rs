@@ -1,9 +1,9 @@
 //! Control loop: encoder, velocity observer, control law, compensator, output limit, and the
-//! fallback for a saturated or blind loop.
+//! fallback for a saturated output or a faulty encoder.
 //!
-//! A step does not allocate, cannot panic, and returns a finite voltage for every input. Where the
-//! encoder is not trusted, or the output has been at its limit for longer than `patience_s`,
-//! nothing is learned. The control law then acts alone ([`Status::FALLBACK`]).
+//! A step does not allocate, cannot panic, and returns a finite voltage for every input. While the
+//! encoder is considered faulty, or after the output has been at its limit for longer than
+//! `patience_s`, nothing is learned. The control law then acts alone ([`Status::FALLBACK`]).
 //!
 //! The example is a loop of 2 ms with the film model of Table 4.2, corrected by an observer, in
 //! `f32` as on a microcontroller:
@@ -67,13 +67,13 @@ use crate::real::Real;
 use crate::reference::Target;
 use sight::Sight;
 
-/// Longest patience, in steps; leaves room for doubts that double.
+/// Largest time limit, in steps; repeated doubling of the time must not overflow.
 const MOST_STEPS: f64 = 1e7;
 
-/// A control loop with its compensator.
+/// Control loop with encoder, velocity observer, control law and compensator.
 #[derive(Clone, Copy, Debug)]
 pub struct Controller<T, C> {
-    /// The compensator.
+    /// Friction compensator.
     pub compensator: C,
     encoder: Encoder<T>,
     observer: VelocityObserver<T>,
@@ -82,7 +82,7 @@ pub struct Controller<T, C> {
     limit_v: T,
 }
 
-/// State of the loop.
+/// State of a control loop.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T, S> {
     /// State of the compensator.
@@ -96,10 +96,10 @@ pub struct State<T, S> {
 }
 
 impl<T: Real, C: Compensator<T>> Controller<T, C> {
-    /// Assembles a loop.
+    /// Creates a control loop from its components.
     ///
     /// # Errors
-    /// Names the limit that is not positive and finite.
+    /// Reports the name of the limit that is not positive and finite.
     pub fn new(
         encoder: Encoder<T>,
         observer: VelocityObserver<T>,
@@ -124,9 +124,10 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         })
     }
 
-    /// Returns the loop at rest, with only the initial values of its compensator.
+    /// Returns the state of a loop at rest, with the initial values of its compensator, also for a
+    /// reset.
     ///
-    /// Angles count from the next sample. This also serves as the reset.
+    /// Angles are relative to that of the first sample.
     #[must_use]
     pub fn start(&self) -> State<T, C::State> {
         State {
@@ -143,8 +144,8 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         }
     }
 
-    /// Computes one step: takes the counter value and the target, returns the voltage with its
-    /// parts.
+    /// Computes one step of the loop: returns the output voltage and its components for a counter
+    /// value and a target.
     #[inline]
     #[must_use = "the voltage of this step is in the parts"]
     pub fn step(

@@ -1,27 +1,27 @@
-//! Output of one step of a loop.
+//! Signals of one step of a control loop.
 
 use super::Status;
 use crate::compensator::Answer;
 use crate::real::Real;
 
-/// All quantities of one step, for logging.
+/// Signals of one step of a control loop, for logging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Parts<T> {
-    /// Angle since the start, rad.
+    /// Angle since the start of the loop, rad.
     pub angle_rad: T,
     /// Speed estimate, rad/s.
     pub velocity_rad_s: T,
-    /// Controlled quantity minus its reference, rad or rad/s.
+    /// Control error: controlled quantity minus its reference, rad or rad/s.
     pub error: T,
     /// Output of the control law, V.
     pub base_v: T,
-    /// Output of the compensator and its parts.
+    /// Output of the compensator and its components.
     pub compensation: Answer<T>,
-    /// Voltage at the amplifier, V: finite and within the limit.
+    /// Output voltage at the amplifier, V: finite and within the limit.
     pub output_v: T,
-    /// Status of the loop.
+    /// Status flags of the loop.
     pub status: Status,
 }
 

@@ -1,42 +1,44 @@
-//! Plausibility check of the encoder.
+//! Detection of encoder faults.
 //!
-//! Three conditions count against it: no count under a voltage that certainly moves the shaft, an
-//! observer that infers rotation without a count, and a jump.
+//! A fault is an unchanged counter under a voltage that certainly moves the shaft, an observer that
+//! infers rotation without a count, or a jump of the counter.
 
 use super::Status;
 use crate::encoder;
 use crate::real::Real;
 
-/// A doubt lasts at most `2^LONGEST_DOUBT` times the patience.
+/// Largest exponent of the duration of a fault that the compensator's observer infers.
+///
+/// The duration is at most `2^LONGEST_DOUBT` times [`Sight::patience`].
 const LONGEST_DOUBT: u32 = 7;
 
-/// Requirements of a loop on its encoder.
+/// Parameters of the detection of encoder faults.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sight<T> {
     /// Voltage that certainly moves the shaft, V.
     pub(super) moving_v: T,
-    /// Steps after which an unchanged counter is frozen, and after which a loop whose encoder
-    /// recovered resumes compensation.
+    /// Number of steps after which an unchanged counter is frozen, and after which a loop with a
+    /// repaired encoder resumes compensation.
     pub(super) patience: u32,
 }
 
-/// Evidence against the encoder, in steps.
+/// Counters of the detection of encoder faults, in steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     /// Steps without a count under a voltage that moves the shaft.
     pushed: u32,
-    /// Steps for which the compensator's doubt still holds.
+    /// Remaining steps of a fault that the compensator's observer inferred.
     doubt: u32,
-    /// Number of doubts since the last count.
+    /// Number of faults that the compensator's observer inferred since the last count.
     doubts: u32,
-    /// Steps for which the loop stays blind.
+    /// Remaining steps in which the encoder is considered faulty.
     blind: u32,
 }
 
 impl<T: Real> Sight<T> {
-    /// Checks a sample; returns the status flags and whether the loop is blind.
+    /// Checks a sample; returns the status flags, and true if the encoder is considered faulty.
     ///
-    /// The loop is blind now, or was so recently that it may become blind again.
+    /// The encoder is considered faulty during a fault and for [`Sight::patience`] steps after it.
     #[inline]
     pub(super) fn step(
         &self,
@@ -109,7 +111,7 @@ mod tests {
         }
     }
 
-    /// Steps until the loop recovers, without further evidence against the encoder.
+    /// Number of steps until the loop resumes compensation, if no further fault occurs.
     fn blind_for(state: &mut State, still: u32) -> u32 {
         (0..10_000)
             .take_while(|_| {

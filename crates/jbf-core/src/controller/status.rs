@@ -1,8 +1,8 @@
-//! Status flags of a loop.
+//! Status flags of a control loop.
 
 use core::ops::{BitOr, BitOrAssign};
 
-/// Flags of one step; [`Status::OK`] has no flag set.
+/// Status flags of one step of a control loop; [`Status::OK`] has no flag set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -31,13 +31,13 @@ impl Status {
         ("fallback", Self::FALLBACK),
     ];
 
-    /// True if any of `other`'s flags is set.
+    /// Returns true if any flag of `other` is set in `self`.
     #[inline]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// The flags as a number, for logging.
+    /// Returns the flags as a number, for logging.
     pub const fn bits(self) -> u8 {
         self.0
     }

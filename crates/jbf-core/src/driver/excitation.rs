@@ -3,18 +3,19 @@
 use crate::error::{finite, not_negative, positive, Error};
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
 
-/// An imposed surface speed and the instants at which it is not smooth.
+/// Imposed surface speed as a function of time, with the instants at which it is not smooth.
 pub trait Excitation {
-    /// Surface speed, signed, m/s.
+    /// Returns the signed surface speed at a time, m/s.
     fn velocity_m_s(&self, time_s: f64) -> f64;
 
-    /// Rate of change of the speed, m/s^2; at a kink, the value after it.
+    /// Returns the rate of change of the speed at a time, m/s^2; at a kink, the value after it.
     fn acceleration_m_s2(&self, time_s: f64) -> f64;
 
-    /// First instant after `time_s` at which the speed changes sign or one of its derivatives
-    /// jumps; infinity where there is none.
+    /// Returns the first instant after `time_s` at which the speed changes sign or one of its
+    /// derivatives jumps, s; infinity if there is none.
     ///
-    /// Steps land on it. A change of sign that is not reported is found if a step ends beyond it.
+    /// Integration steps end at this instant. A change of sign that is not reported is found if a
+    /// step ends after it.
     fn next_kink_s(&self, time_s: f64) -> f64;
 }
 
@@ -24,12 +25,13 @@ pub struct Sine {
     amplitude_m_s: f64,
     omega_rad_s: f64,
     bias_m_s: f64,
-    /// Phase of the first upward zero crossing; `None` where the speed never changes sign.
+    /// Phase of the first zero crossing from negative to positive speed, rad; `None` if the speed
+    /// never changes sign.
     upward_rad: Option<f64>,
 }
 
 impl Sine {
-    /// Creates `U = amplitude sin(omega t)`.
+    /// Creates the speed `U = amplitude sin(omega t)`.
     ///
     /// # Errors
     /// The amplitude must be finite and not negative, the frequency positive and finite.
@@ -37,7 +39,7 @@ impl Sine {
         Self::with_bias(amplitude_m_s, omega_rad_s, 0.0)
     }
 
-    /// Creates `U = bias + amplitude sin(omega t)`.
+    /// Creates the speed `U = bias + amplitude sin(omega t)`.
     ///
     /// # Errors
     /// As [`Sine::new`]; the bias must be finite.
@@ -81,11 +83,11 @@ impl Excitation for Sine {
     }
 }
 
-/// Branch-free sine, so that samples are computed in parallel lanes.
+/// Branch-free sine, so that samples are computed in the lanes of vector registers.
 ///
-/// A trajectory evaluates it more often than any other function. It uses only sums and products and
-/// gives the same bits on every target. Its error is below 4e-16; beyond a million turns it calls
-/// the library.
+/// The integration of a trajectory evaluates the sine more often than any other function. It
+/// consists of sums and products only and returns the same bits on every target. The error is below
+/// 4e-16. Beyond a million turns, the library function is used.
 #[inline]
 fn sine(x: f64) -> f64 {
     // Adding this constant rounds to a whole number, whose last bit is then the last bit of the
@@ -125,12 +127,13 @@ fn sine(x: f64) -> f64 {
     f64::from_bits(value.to_bits() ^ (shifted.to_bits() << 63))
 }
 
-/// Any smooth speed, given with its rate of change; its zeros are found during integration.
+/// Smooth surface speed given by two functions, with its rate of change; changes of sign are found
+/// during integration.
 #[derive(Clone, Copy, Debug)]
 pub struct Function<V, A> {
     /// Speed (m/s) as a function of time (s).
     pub velocity_m_s: V,
-    /// Rate of change of the speed, m/s^2.
+    /// Rate of change of the speed (m/s^2) as a function of time (s).
     pub acceleration_m_s2: A,
 }
 

@@ -1,4 +1,5 @@
-//! Interface between the driver and a film model: smooth equations between kinks.
+//! Interface between the integration of trajectories and a film model: equations that are smooth
+//! between kinks.
 
 use crate::law::journal::film_linear::SmoothFilm;
 use crate::law::journal::Journal;
@@ -7,27 +8,28 @@ use crate::law::journal_full::JournalFull;
 use crate::real::Real;
 use crate::stepper::StiffSystem;
 
-/// Seals [`Film`]: the error control of the driver is written for these films.
+/// Prevents other crates from implementing [`Film`]: the error control is designed for the films of
+/// this crate.
 mod sealed {
     pub trait Sealed {}
     impl<T> Sealed for crate::law::journal::Journal<T> {}
     impl<T> Sealed for crate::law::journal_full::JournalFull<T> {}
 }
 
-/// A film that the driver can integrate: [`Journal`] or [`JournalFull`].
+/// Film model that the driver can integrate: [`Journal`] or [`JournalFull`].
 ///
 /// Its first two states are `eps cos(phi)` and `eps sin(phi)`.
 pub trait Film<T: Real, const N: usize>: sealed::Sealed {
-    /// The equations with or without asperity contact, smooth everywhere.
+    /// Film equations, either with or without asperity contact, smooth everywhere.
     type System: StiffSystem<T, N> + Copy;
 
-    /// Returns the equations with (`touching`) or without asperity contact.
+    /// Returns the film equations with (`touching`) or without asperity contact.
     fn system(&self, touching: bool) -> Self::System;
 
-    /// Returns the state at a position, without velocity.
+    /// Returns the state at the position `(eps cos(phi), eps sin(phi))`, without velocity.
     fn at(&self, xy: [T; 2]) -> [T; N];
 
-    /// Film without inertia: load, friction and clock.
+    /// Returns the film without inertia, which has the same load, friction and time scale.
     fn journal(&self) -> &Journal<T>;
 }
 

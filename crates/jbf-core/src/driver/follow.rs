@@ -11,8 +11,8 @@ use crate::stepper::{Linear, StiffSystem};
 
 /// Integrates `film` along `excitation` from `start`, with output at each of `times_s` (ascending).
 ///
-/// Each sample is passed to `sink` with its index. The error of the friction coefficient is about
-/// `tolerance`.
+/// The receiver `sink` is called with each sample and its index. The error of the friction
+/// coefficient is about `tolerance`.
 ///
 /// # Errors
 /// As [`super::trajectory`].
@@ -31,12 +31,12 @@ pub fn follow<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     Ok(way.cost)
 }
 
-/// Eccentricity ratio of a state.
+/// Eccentricity ratio of the journal in a state of the integration.
 pub(super) fn radius<T: Real, const N: usize>(state: &[T; N]) -> f64 {
     sqrt((state[0] * state[0] + state[1] * state[1]).value())
 }
 
-/// Integration in progress of a film along an excitation.
+/// Integration of a film along an excitation, in progress.
 pub(super) struct Way<'a, T, F, E, S, const N: usize> {
     pub(super) film: &'a F,
     pub(super) excitation: &'a E,
@@ -46,7 +46,7 @@ pub(super) struct Way<'a, T, F, E, S, const N: usize> {
     pub(super) time_s: f64,
     pub(super) state: [T; N],
     pub(super) touching: bool,
-    /// Next step proposed by the error control, s.
+    /// Length of the next step, proposed by the error control, s.
     pub(super) step_s: f64,
     next: usize,
     pub(super) goal: Goal,
@@ -60,7 +60,7 @@ where
     E: Excitation,
     S: FnMut(usize, &Sample<T>),
 {
-    /// Creates the integration at the start, and outputs the samples there.
+    /// Creates the integration at its start, and outputs the samples at this time.
     pub(super) fn from_start(
         film: &'a F,
         excitation: &'a E,
@@ -97,7 +97,7 @@ where
         Ok(way)
     }
 
-    /// True if all samples have been output.
+    /// Returns true if all samples have been output.
     #[inline]
     pub(super) fn done(&self) -> bool {
         self.next >= self.times_s.len()
@@ -108,7 +108,8 @@ where
         system.linearise(&self.state, ub)
     }
 
-    /// True if the eccentricity increases here with the equations without asperity contact.
+    /// Returns true if the eccentricity increases at the present state according to the equations
+    /// without asperity contact.
     fn closes_in(&mut self) -> bool {
         let ub = T::of(libm::fabs(self.excitation.velocity_m_s(self.time_s)));
         let ub = ub * self.film.journal().inverse_u_tr;
@@ -123,7 +124,7 @@ where
         }
     }
 
-    /// Outputs the samples inside a step.
+    /// Outputs the samples inside a step from polynomials of the position along the step.
     pub(super) fn emit(&mut self, along: &[[T; 5]; 2], step_s: f64, to: f64) {
         let (from, inverse) = (self.time_s, 1.0 / step_s);
         while let Some(&t) = self.times_s.get(self.next) {

@@ -1,14 +1,14 @@
-//! Location of kinks: roots of a function with a change of sign.
+//! Location of kinks: roots of a function between two points where its sign differs.
 
 use crate::real::Real;
 
-/// Evaluates a polynomial of degree four.
+/// Evaluates a polynomial of degree four, with coefficients `c` from the constant upwards, at `s`.
 #[inline]
 pub(super) fn polynomial<T: Real>(c: &[T; 5], s: T) -> T {
     c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * c[4])))
 }
 
-/// Eccentricity ratio at `s` along a step.
+/// Eccentricity ratio at the fraction `s` of a step, from polynomials of the position.
 pub(super) fn eps_along<T: Real>(along: &[[T; 5]; 2], s: f64) -> f64 {
     let (x, y) = (
         polynomial(&along[0], T::of(s)).value(),
@@ -17,10 +17,8 @@ pub(super) fn eps_along<T: Real>(along: &[[T; 5]; 2], s: f64) -> f64 {
     crate::root::sqrt(x * x + y * y)
 }
 
-/// Root between `low` and `high`, where `f` changes sign.
-///
-/// The method is false position with Illinois weights (Dowell & Jarratt, BIT 11, 1971), kept inside
-/// its bracket by bisection.
+/// Finds a root between `low` and `high`, where the signs of `f` differ, with an accuracy of
+/// `within`.
 pub(super) fn root(mut low: f64, mut high: f64, within: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut f_low, mut f_high) = (f(low), f(high));
     for round in 0..100 {

@@ -1,9 +1,9 @@
-//! Trajectories to a tolerance, for analysis.
+//! Trajectories of a film with a given accuracy, for analysis.
 //!
-//! Steps are as long as the error of the friction coefficient allows. They land on every reversal
-//! and on every asperity contact, where the model has kinks. Samples come from a polynomial along
-//! each step, so their number does not determine the number of steps. A control loop uses
-//! [`Law::advance`](crate::law::Law::advance) instead.
+//! The step size follows from the error of the friction coefficient. Steps end at each reversal and
+//! at each beginning or end of asperity contact, where the model has kinks. Samples are evaluated
+//! with a polynomial along each step, so their number has no influence on the steps. A control loop
+//! uses [`Law::advance`](crate::law::Law::advance) instead.
 //!
 //! ```
 //! use jbf_core::driver::{trajectory, Sine};
@@ -39,16 +39,16 @@ use crate::error::{check, positive, Error};
 use crate::law::journal::START_PHI_RAD;
 use crate::real::Real;
 
-/// Start of a trajectory.
+/// Time and state of the film at the start of a trajectory.
 ///
 /// The default is time zero with the state of [`Law::start`](crate::law::Law::start): asperities
 /// just in contact, attitude angle 0.15 rad, no velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Start<T> {
-    /// Time, s.
+    /// Start time, s.
     pub time_s: f64,
-    /// Eccentricity ratio; `None` for eps_tr.
+    /// Eccentricity ratio; `None` for eps_tr, at which asperity contact begins.
     pub eps: Option<T>,
     /// Attitude angle, rad.
     pub phi_rad: T,
@@ -65,7 +65,7 @@ impl<T: Real> Default for Start<T> {
 }
 
 impl<T: Real> Start<T> {
-    /// Sets the time, s.
+    /// Sets the start time, s.
     #[must_use]
     pub fn with_time_s(mut self, time_s: f64) -> Self {
         self.time_s = time_s;
@@ -95,13 +95,13 @@ pub struct Sample<T> {
     pub xy: [T; 2],
     /// Eccentricity ratio.
     pub eps: T,
-    /// Friction coefficient with the sign of the speed; at rest without the asperity part, which is
-    /// set-valued there.
+    /// Friction coefficient with the sign of the speed. At rest, it does not include the asperity
+    /// part, which is set-valued there.
     pub coefficient: T,
 }
 
 impl Sample<f64> {
-    /// Attitude angle, rad.
+    /// Returns the attitude angle, rad.
     pub fn phi_rad(&self) -> f64 {
         libm::atan2(self.xy[1], self.xy[0])
     }
@@ -111,26 +111,27 @@ impl Sample<f64> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Cost {
-    /// Steps taken.
+    /// Number of accepted steps.
     pub steps: u32,
-    /// Steps computed and discarded, because the error was too large or a kink was inside.
+    /// Number of steps discarded because the error was too large or a kink was inside.
     pub rejected: u32,
-    /// Evaluations of the equations of motion.
+    /// Number of evaluations of the equations of motion.
     pub slopes: u32,
-    /// Evaluations of the equations with derivatives.
+    /// Number of evaluations of the equations with their derivatives.
     pub linearisations: u32,
-    /// Steps at the resolution of time, accepted regardless of their error.
+    /// Number of steps at the resolution of time, which are accepted regardless of their error.
     pub forced: u32,
 }
 
-/// Friction coefficients at `times_s` (ascending, from zero), to about `tolerance`.
+/// Computes the friction coefficients at `times_s` (s, ascending, from zero), with an error of
+/// about `tolerance`.
 ///
 /// `out` receives as many values as it has elements.
 ///
 /// # Errors
-/// Names the first of `tolerance` (positive, finite) and `times_s` (ascending, finite) that
-/// violates its rule. Any tolerance is accepted: the coarsest value used is 0.1, the finest is
-/// limited by rounding.
+/// Reports the name of the argument that violates its rule: `tolerance` must be positive and
+/// finite, `times_s` ascending and finite. A tolerance above 0.1 is treated as 0.1, and rounding
+/// limits the accuracy for very small ones.
 pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     film: &F,
     excitation: &E,

@@ -5,8 +5,8 @@ use crate::error::{check, finite, Error};
 
 /// Speed that is linear between samples, constant before the first and after the last.
 ///
-/// A step lands on every sample. The motion between two samples is unknown, and a longer step could
-/// miss the changes at the samples.
+/// An integration step ends at every sample, because a longer step could miss the changes of slope
+/// at the samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampled<'a> {
     time_s: &'a [f64],
@@ -14,7 +14,7 @@ pub struct Sampled<'a> {
 }
 
 impl<'a> Sampled<'a> {
-    /// Creates an excitation from a record of at least two samples.
+    /// Creates an excitation from the times (s) and speeds (m/s) of a record.
     ///
     /// # Errors
     /// The slices must have the same length, of two or more; times must rise; all values must be
@@ -43,7 +43,7 @@ impl<'a> Sampled<'a> {
         })
     }
 
-    /// Times and speeds of the samples around a time; `None` outside the record.
+    /// Times and speeds of the two samples next to a time; `None` outside the record.
     fn round(&self, time_s: f64) -> Option<([f64; 2], [f64; 2])> {
         let after = self.time_s.partition_point(|&t| t <= time_s);
         let before = after.checked_sub(1)?;

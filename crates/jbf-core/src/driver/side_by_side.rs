@@ -1,11 +1,11 @@
-//! Parallel integration of films without inertia along several excitations.
+//! Parallel integration of a film without inertia along several excitations.
 //!
-//! Steps to a tolerance differ in length and number, but the stages of one step are the same
-//! operations as those of another. The next steps of several trajectories are computed in lanes,
-//! and each trajectory then continues on its own.
+//! Steps with error control differ in length and number, but consist of the same operations. The
+//! next steps of several trajectories are computed in the lanes of vector registers, and each
+//! trajectory then continues separately.
 //!
-//! A step of one film waits for its own roots and divisions; those of several films overlap. The
-//! result is identical bit for bit to that of [`super::follow`].
+//! The square roots and divisions of several films overlap in time, while those of one film depend
+//! on each other. The result is identical bit for bit to that of [`super::follow`].
 
 use super::follow::Way;
 use super::stretch::Stretch;
@@ -20,20 +20,19 @@ use crate::stepper::Linear;
 
 type Step = Asked<f64, SmoothFilm<f64>, 2>;
 
-/// One trajectory: its excitation, its sample times (s, ascending), and the receiver of its
-/// samples.
+/// Input and output of one trajectory: excitation, sample times, and receiver of the samples.
 pub struct Along<'a, E, S> {
-    /// Imposed speed.
+    /// Imposed surface speed.
     pub excitation: &'a E,
-    /// Sample times, s.
+    /// Sample times, s, ascending.
     pub times_s: &'a [f64],
-    /// Receives each sample with its index.
+    /// Receiver, called with each sample and its index.
     pub sink: S,
 }
 
-/// Integrates at most `K` excitations from one start, each as [`super::follow`] does.
+/// Integrates `film` along at most `K` excitations from one start, each as [`super::follow`] does.
 ///
-/// `lanes` computes the next step of each, as [`step`] does.
+/// `lanes` computes the next step of each trajectory, as [`step`] does.
 ///
 /// # Errors
 /// As [`super::trajectory`], for the first excitation that violates a rule.
@@ -80,7 +79,7 @@ pub fn follow_side_by_side<E: Excitation, S: FnMut(usize, &Sample<f64>), const K
     Ok(ways.map(|way| way.map_or(Cost::default(), |way| way.cost)))
 }
 
-/// Prepares the next step of a trajectory, on the next segment where one has ended.
+/// Prepares the next step of a trajectory, and begins the next segment if one has ended.
 ///
 /// Returns false at the last sample.
 #[inline]
@@ -106,7 +105,7 @@ fn next<E: Excitation, S: FnMut(usize, &Sample<f64>)>(
 }
 
 impl Step {
-    /// Placeholder step with values that stay finite.
+    /// Placeholder for a lane without a trajectory; its values stay finite.
     const NONE: Self = Self {
         system: SmoothFilm::NONE,
         linear: Linear {
@@ -127,10 +126,10 @@ impl Step {
     };
 }
 
-/// Computes `K` steps, stored as one array per variable.
+/// Computes one step of `K` trajectories, stored as one array per variable.
 ///
-/// A compiler can then place neighbours in the lanes of one register. `T` is meant to be a lane
-/// ([`Real::SIDE_BY_SIDE`]).
+/// The compiler can then place adjacent trajectories in the lanes of one register. `T` is meant to
+/// be a lane ([`Real::SIDE_BY_SIDE`]).
 #[inline(always)]
 pub fn step<T: Real, const K: usize>(steps: &[Step; K], out: &mut [Stages<f64, 2>; K]) {
     let of = |pick: fn(&Step) -> f64| -> [f64; K] { core::array::from_fn(|i| pick(&steps[i])) };

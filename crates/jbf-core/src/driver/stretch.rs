@@ -1,8 +1,8 @@
-//! Integration of a segment: from one kink of the excitation to the next, in steps that the error
-//! allows.
+//! Integration of a segment, the interval from one kink of the excitation to the next, with error
+//! control.
 //!
-//! A step is tried and assessed (`trial.rs`), then accepted or not. The memory of a segment from
-//! one trial to the next is its [`Aim`]:
+//! A step is computed and assessed (`trial.rs`), then accepted or rejected. The [`Aim`] is the
+//! state of a segment between two trials:
 //!
 //! ```text
 //! aim            what the step does                          next aim
@@ -21,31 +21,35 @@ use crate::real::Real;
 use crate::stepper::rodas5p::Stages;
 use crate::stepper::Linear;
 
-/// Purpose of the next step.
+/// Purpose of the next trial step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Aim {
-    /// Advance as far as the error allows.
+    /// Advance by the step size of the error control.
     Ahead,
-    /// End the step where the eccentricity reaches eps_tr, after this time, s. Asperity contact
-    /// begins or ends there.
+    /// End the step where the eccentricity ratio reaches eps_tr, after this time, s; asperity
+    /// contact begins or ends there.
     Touch(f64),
-    /// Advance on the other side of eps_tr, after a trial that began on the wrong side. If this
-    /// trial begins on the wrong side again, the journal is at eps_tr and the step is accepted.
+    /// Advance with the equations of the other side of eps_tr, after a trial that began on the
+    /// wrong side.
+    ///
+    /// If this trial begins on the wrong side again, the journal is at eps_tr and the step is
+    /// accepted.
     Turned,
 }
 
-/// Equations linearised at the start of a step, with the speed and the rate of the input there.
+/// Equations linearised at the start of a step, with the speed and the rate of change of the input
+/// at this time.
 pub(super) struct Here<T, const N: usize> {
-    /// Speed, m/s.
+    /// Absolute surface speed, m/s.
     pub(super) speed_m_s: f64,
     pub(super) linear: Linear<T, N>,
-    /// Rate of change of the input of the equations.
+    /// Derivative of the input of the equations with respect to dimensionless time.
     pub(super) rate: T,
 }
 
-/// A segment in progress.
+/// Segment of the integration, in progress.
 pub(super) struct Stretch<T, Y, const N: usize> {
-    /// Sign of the speed.
+    /// Sign of the surface speed in the segment.
     pub(super) direction: f64,
     /// End of the segment, s.
     pub(super) end_s: f64,
@@ -71,7 +75,7 @@ where
         self.time_s = stretch.end_s;
     }
 
-    /// Acts on the result of a tried step.
+    /// Accepts or rejects a trial step, and determines the next one.
     #[inline]
     pub(super) fn answer(
         &mut self,
@@ -127,19 +131,20 @@ where
         }
     }
 
-    /// Sign of the speed on the segment that ends at `end_s`.
+    /// Sign of the surface speed in the segment that ends at `end_s`.
     fn direction(&self, end_s: f64) -> f64 {
         let ahead = (0.01 * self.step_s).min(0.5 * (end_s - self.time_s));
         self.excitation.velocity_m_s(self.time_s + ahead).sign()
     }
 
-    /// Input of the equations at an unsigned speed, m/s.
+    /// Input of the film equations (dimensionless speed) at an unsigned surface speed, m/s.
     #[inline]
     pub(super) fn input(&self, speed_m_s: f64) -> T {
         T::of(speed_m_s) * self.film.journal().inverse_u_tr
     }
 
-    /// Rate of change of the input at the present time.
+    /// Derivative of the input of the equations with respect to dimensionless time, at the present
+    /// time.
     #[inline]
     fn input_rate(&self, direction: f64) -> T {
         let journal = self.film.journal();
@@ -148,7 +153,7 @@ where
             * (T::ONE / journal.rate)
     }
 
-    /// Re-evaluates the equations after a change of the position or the side.
+    /// Linearises the equations again after a change of the position or of the side of eps_tr.
     #[inline]
     fn look(&mut self, stretch: &mut Stretch<T, F::System, N>) {
         let input = self.input(stretch.direction * stretch.here.speed_m_s);
@@ -161,7 +166,7 @@ where
         stretch.system = self.film.system(self.touching);
     }
 
-    /// Accepts a sound step. If it was to land on eps_tr, changes to the other side.
+    /// Accepts a trial step. Changes to the other side of eps_tr if the step was to end there.
     #[inline]
     fn take(
         &mut self,
@@ -185,7 +190,7 @@ where
         self.go_on(stretch, tried);
     }
 
-    /// Keeps the film at its position when no step is possible.
+    /// Advances the time and keeps the film at its position, because no step is possible.
     #[cold]
     fn wait(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
         let [x, y] = [self.state[0], self.state[1]];
@@ -199,7 +204,8 @@ where
         self.go_on(stretch, tried);
     }
 
-    /// Moves to the end of a step, and re-evaluates the equations if the segment continues.
+    /// Sets the time to the end of a step, and linearises the equations again if the segment
+    /// continues.
     #[inline]
     fn go_on(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
         self.time_s = tried.to_s;

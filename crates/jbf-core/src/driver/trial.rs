@@ -1,4 +1,5 @@
-//! Trial and assessment of one step of a segment; only the cost counters change.
+//! Computation and assessment of one trial step of a segment; only the cost counters of the
+//! integration change.
 
 use super::follow::{radius, Way};
 use super::goal::inverse_root;
@@ -10,14 +11,14 @@ use crate::stepper::rodas5p::{self, Input, Stages};
 use crate::stepper::rodas5p_tableau::NODES;
 use crate::stepper::{Linear, StiffSystem};
 
-/// A requested step: the inputs of its stages, and its end.
+/// Trial step to be computed: equations, state, inputs of its stages, and its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<T, Y, const N: usize> {
     pub(super) system: Y,
     pub(super) linear: Linear<T, N>,
     pub(super) state: [T; N],
     pub(super) input: Input<T>,
-    /// Length of the step on the film's clock.
+    /// Length of the step in dimensionless time.
     pub(super) dt: T,
     pub(super) step_s: f64,
     pub(super) to_s: f64,
@@ -25,7 +26,7 @@ pub struct Asked<T, Y, const N: usize> {
 }
 
 impl<T: Real, Y: StiffSystem<T, N>, const N: usize> Asked<T, Y, N> {
-    /// Computes the stages of the step.
+    /// Computes the stages of the implicit method for the step.
     #[inline]
     pub(super) fn stages(&self) -> Stages<T, N> {
         rodas5p::step(
@@ -38,42 +39,42 @@ impl<T: Real, Y: StiffSystem<T, N>, const N: usize> Asked<T, Y, N> {
     }
 }
 
-/// A step that was tried.
+/// Trial step with its error estimate.
 pub(super) struct Tried<'a, T, const N: usize> {
     pub(super) step_s: f64,
-    /// End of the step, s, and the speed there, m/s.
+    /// Time at the end of the step, s; `speed_m_s` is the surface speed at this time.
     pub(super) to_s: f64,
     pub(super) speed_m_s: f64,
     pub(super) stages: &'a Stages<T, N>,
-    /// Error relative to the allowed error.
+    /// Estimated error divided by the allowed error.
     pub(super) share: f64,
-    /// True if the result is finite and does not jump across the gap.
+    /// True if the result is finite and at least a quarter of the gap remains.
     pub(super) sound: bool,
-    /// Shortest step that the time resolves here, s.
+    /// Shortest step that floating-point time resolves at this time, s.
     pub(super) shortest_s: f64,
 }
 
-/// Result of the assessment of a tried step.
+/// Assessment of a trial step.
 pub(super) enum Verdict<T> {
-    /// The error is too large; try this fraction of the step.
+    /// The error is too large; the step must be shortened by this factor.
     TooLong(f64),
-    /// The step is at the resolution of time and still not acceptable.
+    /// The step is at the resolution of time, but is not finite or leaves the bearing.
     Stuck,
-    /// The speed changes sign at this time inside the step.
+    /// The surface speed changes sign at this time inside the step, s.
     Reverses(f64),
-    /// Asperities touch or separate inside the step, this many seconds from its start.
+    /// Asperity contact begins or ends inside the step, this time after its start, s.
     Touches(f64),
     /// The step began on the other side of eps_tr than assumed.
     WrongSide,
-    /// The step is sound; positions along it, as polynomials.
+    /// The step is accepted; the two polynomials are the position along it.
     Sound([[T; 5]; 2]),
 }
 
-/// Position of a step relative to eps_tr, where asperity contact begins or ends.
+/// Position of the journal in a step relative to eps_tr, where asperity contact begins or ends.
 enum Touch {
-    /// The step stays on one side of eps_tr.
+    /// The eccentricity ratio stays on one side of eps_tr.
     No,
-    /// The step passes eps_tr at this fraction of its length.
+    /// The eccentricity ratio passes eps_tr at this fraction of the step.
     At(f64),
     /// The step began on the other side of eps_tr than assumed.
     Wrong,
@@ -86,7 +87,8 @@ where
     E: Excitation,
     S: FnMut(usize, &Sample<T>),
 {
-    /// Length of the next step, s; leaves no remainder too short for a step.
+    /// Length of the next trial step, s; the remainder of the segment is never too short for a
+    /// step.
     #[inline]
     fn length(&self, stretch: &Stretch<T, F::System, N>) -> f64 {
         let room = stretch.end_s - self.time_s;
@@ -103,7 +105,7 @@ where
         }
     }
 
-    /// Prepares the next step.
+    /// Prepares the next trial step.
     #[inline]
     pub(super) fn ask(&self, stretch: &Stretch<T, F::System, N>) -> Asked<T, F::System, N> {
         let step_s = self.length(stretch);
@@ -133,7 +135,7 @@ where
         }
     }
 
-    /// Evaluates the result of a requested step.
+    /// Estimates the error of a computed trial step.
     #[inline]
     pub(super) fn tried<'s>(
         &mut self,
@@ -205,7 +207,8 @@ where
         }
     }
 
-    /// Time inside a step at which the speed leaves `direction`, if it does.
+    /// Time inside a step at which the sign of the speed differs from `direction`, s; `None` if it
+    /// does not change.
     #[inline]
     fn untold_reversal(&self, direction: f64, tried: &Tried<'_, T, N>) -> Option<f64> {
         if tried.speed_m_s * direction > 0.0 || tried.speed_m_s == direction {
@@ -226,7 +229,7 @@ where
         (zero > self.time_s + ahead).then_some(zero)
     }
 
-    /// Determines whether the eccentricity leaves its side of eps_tr along a step.
+    /// Determines whether the eccentricity ratio passes eps_tr along a step.
     fn passes_touch(&self, along: &[[T; 5]; 2]) -> Touch {
         let side = if self.touching { 1.0 } else { -1.0 };
         let eps_tr = self.loaded.eps_tr.value();
@@ -251,8 +254,10 @@ mod tests {
     use crate::law::journal::{Journal, Parameters};
     use crate::{Bearing, Clock};
 
-    /// A step is sound up to three quarters of the gap to the edge, whatever its error is. A step
-    /// out of the bearing and a step that is not a number are not sound.
+    /// A step is accepted only if it uses at most three quarters of the gap to the wall, whatever
+    /// its error is.
+    ///
+    /// A step out of the bearing and a step that is not a number are rejected.
     #[test]
     fn step_is_accepted_only_if_a_quarter_of_the_gap_remains() {
         let law = Journal::new(

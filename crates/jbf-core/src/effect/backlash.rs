@@ -1,16 +1,17 @@
 //! Backlash in the drive: after a reversal the drive crosses a gap before it moves the journal.
 //!
 //! ```text
-//! th_j stands while th_m crosses the gap; at a flank it follows
+//! th_j is constant while th_m crosses the gap; th_j follows th_m at a flank
 //! ```
 //!
-//! This is the play operator of hysteresis (Brokate & Sprekels 1996). While the gap is crossed
-//! nothing turns the journal: it is at rest, and the load cell measures no friction, because only
-//! the drive could balance it. The film sees a journal at rest.
+//! This is the play operator of hysteresis (Brokate & Sprekels 1996). While the drive crosses the
+//! gap, the journal is at rest, and the load cell measures no friction, because only the drive
+//! could balance friction.
 //!
-//! The first motion of a run starts with its flank closed. The friction rises on a ramp of one
-//! step, whose middle is where the flank closes. The reading is then continuous in the gap and has
-//! a derivative for an optimiser.
+//! At the first motion of a run, the flank in the direction of the motion is in contact. The
+//! friction rises linearly over one step, which is centred on the instant of contact. The predicted
+//! force is then a continuous function of the size of the gap, and its derivative is available to
+//! an optimiser.
 
 use super::{Drive, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -18,32 +19,33 @@ use crate::motion::{crossing, JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// A gap between the drive's flanks.
+/// Backlash in the drive: a gap between two flanks.
 #[derive(Clone, Copy, Debug)]
 pub struct Backlash<T> {
     gap_rad: T,
 }
 
-/// Position of the drive in the gap.
+/// Position of the drive in the gap, and the flank that is in contact.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// Distance from the middle of the gap, m: half the gap at the flank that drives forward.
+    /// Distance of the drive from the middle of the gap, m: half the gap at the flank that drives
+    /// forward.
     place_m: T,
-    /// Closed flank: +1 drives forward, -1 backward; 0 inside the gap.
+    /// Flank in contact: +1 drives forward, -1 backward; 0 inside the gap.
     closed: i8,
-    /// False before the first motion.
+    /// True after the first motion of the run.
     begun: bool,
-    /// `place_m` at the start of motion, where the angles of journal and drive were equal.
+    /// Value of `place_m` at the first motion, at which the angles of journal and drive were equal.
     first_m: T,
     /// Speed of the drive at the end of the last step, m/s.
     speed_m_s: T,
 }
 
 impl<T: Real> State<T> {
-    /// Moves the drive by the signed distance `way_m`.
+    /// Moves the drive by the signed distance `way_m` in a gap of half width `half_m`.
     ///
-    /// Returns the position of the journal on the ramp between rest and following the drive, 0 to
-    /// 1.
+    /// Returns the weight of the drive's motion in that of the journal: 0 for a journal at rest, 1
+    /// for one that follows the drive.
     #[inline(always)]
     fn advance(&mut self, way_m: T, half_m: T) -> T {
         let ahead = if way_m > T::ZERO { 1 } else { -1 };

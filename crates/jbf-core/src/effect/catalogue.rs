@@ -1,4 +1,4 @@
-//! Catalogue of effects: the fixed order of the signal chain, in one place.
+//! Catalogue of effects in the order in which the signal chain evaluates them.
 
 use super::place::{
     AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, InTransmission,
@@ -74,18 +74,18 @@ signal_chain! {
 }
 
 impl<T: Real> Effects<T> {
-    /// Combines these effects with user-defined ones, which act last at every stage; see
-    /// [`super::place`].
+    /// Combines the selected effects of the catalogue with user-defined ones, which act last at
+    /// every stage; see [`super::place`].
     pub fn with<E: EffectSet<T>>(self, own: E) -> (Self, E) {
         (self, own)
     }
 }
 
-/// Each stage calls the effects of its own line only.
+/// Effects of the catalogue as one set; each stage of the signal chain calls only the effects of
+/// that stage.
 ///
-/// The code of all effects is inlined where a chain holds `Effects` itself. With debug assertions
-/// each stage is a separate function instead, which reduces the compile time of tests to a
-/// fraction.
+/// The code of all effects is inlined in a chain with `Effects`. With debug assertions each stage
+/// is a separate function instead, which reduces the compile time of tests to a fraction.
 impl<T: Real> EffectSet<T> for Effects<T> {
     type State = States<T>;
 
@@ -237,10 +237,11 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     }
 }
 
-/// True if the catalogue has an effect of this name and the values fit its parameters.
+/// Returns true if the catalogue has an effect with this name and the values are valid for its
+/// parameters.
 ///
-/// The number of values must be that of the parameters, and each value must be within its bounds.
-/// The function can check a constant at compile time, such as those that `jbf export` writes.
+/// There must be one value per parameter, each within the bounds. The function can check constants
+/// at compile time, for example those that `jbf export` writes.
 ///
 /// ```
 /// const _: () = assert!(jbf_core::effect::fits("coulomb_drag", &[0.8]));

@@ -1,12 +1,12 @@
-//! Force that repeats with every pitch of the travel: `+ A sin(2 pi x/p - phi)`.
+//! Cogging: a force that is periodic in the position, `+ A sin(2 pi x/p - phi)`.
 //!
-//! Magnets attracted by teeth: the motor alternately pushes and holds back, in motion or at rest,
+//! Teeth attract the magnets of a motor and alternately drive and brake it, in motion and at rest,
 //! independently of friction. In a rotary motor the pitch is one turn divided by the least common
-//! multiple of poles and slots. In a linear motor it is the pitch of the magnets. A gear or a screw
-//! shortens it by its ratio.
+//! multiple of poles and slots. In a linear motor it is the pitch of the magnets. On the output
+//! side of a gear or a screw, the pitch is divided by the ratio.
 //!
-//! `gravity` repeats once per turn of the shaft; this effect has any pitch, which the fit must
-//! find. `pitch_ripple` scales friction instead and has no effect on a drive at rest.
+//! `gravity` repeats once per turn of the shaft; the pitch of this effect is a parameter of the
+//! fit. `pitch_ripple` scales friction instead and has no effect on a drive at rest.
 //!
 //! Source: Zhu & Howe (2000) for rotary machines; Otten et al. (1997) for linear ones.
 
@@ -18,14 +18,14 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Force that is periodic in the position.
+/// Cogging force that is periodic in the position.
 #[derive(Clone, Copy, Debug)]
 pub struct Cogging<T> {
     amplitude_n: T,
     pitch: Pitch<T>,
 }
 
-/// Descriptions of the parameters.
+/// Descriptions of the parameters amplitude, pitch and phase.
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new("A", "N", "amplitude", [0.0, 1e7], &[1.0])
         .null(0.0)
@@ -45,7 +45,7 @@ impl<T: Real> Effect<T> for Cogging<T> {
         )
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
-    /// Radius, m.
+    /// Radius that converts an angle to a position, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -1,9 +1,10 @@
-//! Second periodic force in addition to `cogging`, with its own pitch: `+ A sin(2 pi x/p - phi)`.
+//! Second cogging force in addition to `cogging`, with its own pitch: `+ A sin(2 pi x/p - phi)`.
 //!
-//! Slots and poles cog at one pitch, an uneven magnet once per turn, and each has harmonics. The
-//! second wave is therefore at half the pitch or at another one; the fitted pitch shows which.
+//! The force of slots and poles has one pitch, that of an uneven magnet is periodic in a turn, and
+//! each has harmonics. The fitted pitch therefore shows whether the second force is the harmonic
+//! with half the pitch or has another cause.
 //!
-//! Source: that of `cogging`.
+//! Source: as for `cogging`.
 
 use super::cogging::{Cogging, PARAMETERS};
 use super::{Effect, Info, Need, OtherFriction, Rig, Stage};
@@ -12,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Second force that is periodic in the position.
+/// Second cogging force that is periodic in the position.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondCogging<T>(Cogging<T>);
 
@@ -25,7 +26,7 @@ impl<T: Real> Effect<T> for SecondCogging<T> {
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position])
         .further("cogging");
-    /// Radius, m.
+    /// Radius that converts an angle to a position, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

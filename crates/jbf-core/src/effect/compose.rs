@@ -1,5 +1,4 @@
-//! Composition of sets of effects: a pair, whose first set acts first at every stage, and an
-//! optional set.
+//! Sets of effects composed of other sets: a pair, and an optional set.
 
 use super::{EffectSet, Resistance, Rig, Signal};
 use crate::friction::Friction;
@@ -7,7 +6,7 @@ use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Two sets in combination; the first acts first at every stage.
+/// Pair of sets; the effects of the first act first at every stage of the signal chain.
 impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
     type State = (A::State, B::State);
 
@@ -122,7 +121,7 @@ impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
     }
 }
 
-/// An optional set.
+/// Optional set of effects; `None` has no effect.
 impl<T: Real, A: EffectSet<T>> EffectSet<T> for Option<A> {
     type State = Option<A::State>;
 

@@ -1,7 +1,7 @@
-//! Direction-dependent friction: friction times `1 + a sgn v`.
+//! Direction-dependent friction: friction multiplied by `1 + a sgn v`.
 //!
-//! Source: mounted bearings and belts, whose side load adds to one direction and takes from the
-//! other; listed among the departures from symmetry by Armstrong-Helouvry et al. (1994).
+//! Source: mounted bearings and belts, whose side load increases friction in one direction and
+//! reduces it in the other. Armstrong-Helouvry et al. (1994) list this asymmetry.
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;

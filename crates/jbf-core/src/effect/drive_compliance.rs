@@ -1,18 +1,18 @@
-//! Compliant drive: the motion of the encoder side is imposed, and the journal follows through a
-//! spring.
+//! Compliant drive: the motion of the encoder side is imposed, and a spring and a damper connect
+//! the journal to it.
 //!
 //! ```text
 //! J theta_j'' = k (theta_m - theta_j) + c (theta_m' - theta_j') - n R F(theta_j')
 //! ```
 //!
-//! F is set-valued at rest: the journal sticks while the twist torque is below the sliding
-//! friction, and the load cell then measures the twist torque.
+//! F is set-valued at rest: the journal sticks while the torque of the spring is below the sliding
+//! friction, and the load cell then measures the torque of the spring.
 //!
-//! A linear axis is treated as a rotary one of radius 1 m: k is then in N/m, c in N s/m, J in kg.
+//! A linear axis is treated as a shaft of radius 1 m: k is then in N/m, c in N s/m, J in kg.
 //!
-//! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994). The step
-//! is the midpoint rule with the set-valued force solved implicitly (a proximal step, after
-//! Moreau): it sticks, and it does not chatter.
+//! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994). The
+//! integration method is the midpoint rule with an implicit solution for the set-valued force (a
+//! proximal step, after Moreau), which allows sticking without chattering.
 
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
@@ -20,40 +20,43 @@ use crate::motion::{sag, JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Largest number of inner steps per step.
+/// Largest number of integration steps per step of the chain.
 ///
-/// At steps of 5 ms they resolve a free journal up to 230 Hz. The midpoint rule is stable for a
-/// stiffer drive too, but its ringing is not resolved.
+/// In a step of 5 ms, they resolve the oscillation of a journal without friction up to 230 Hz. The
+/// midpoint rule is also stable for a stiffer drive, but its oscillation is not resolved.
 const MOST_INNER_STEPS: f64 = 24.0;
 
-/// Shortest previous step, s, from which a change of the resistance can be extrapolated.
+/// Shortest previous step from which a change of the resistance is extrapolated, s.
 const SHORTEST_STEP_S: f64 = 1e-12;
 
-/// A spring and a damper between encoder and journal.
+/// Spring and damper between the encoder and the inertia of the journal.
 #[derive(Clone, Copy, Debug)]
 pub struct DriveCompliance<T> {
     stiffness_n_m_rad: T,
     damping_n_m_s_rad: T,
     inertia_kg_m2: T,
-    /// Longest inner step, s: a fraction of the period of the free journal.
+    /// Longest integration step, s: a fraction of the period of a journal without friction.
     inner_step_s: f64,
 }
 
-/// Angle and speed of the journal, and the last motion of the encoder side.
+/// Angle and speed of the journal, the motion of the encoder side, and the resistance of the
+/// journal.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     angle_rad: T,
     speed_rad_s: T,
     encoder_rad: T,
     encoder_m_s: T,
-    /// Resistance of the journal now and one step ago, and the length of that step, s.
+    /// Resistance of the journal after the last step.
+    ///
+    /// `before` is the resistance one step (`step_before_s`) earlier.
     resistance: Resistance<T>,
     before: Resistance<T>,
     step_before_s: f64,
 }
 
 impl<T: Real> State<T> {
-    /// Resistance at a `share` of a step from now, extrapolated linearly from the last two.
+    /// Resistance at a `share` of a step after the last one, extrapolated linearly.
     #[inline(always)]
     fn ahead(&self, share: f64) -> Resistance<T> {
         let on = |a: T, b: T| (b + (b - a) * T::of(share)).max(T::ZERO);

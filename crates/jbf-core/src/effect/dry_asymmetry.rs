@@ -1,14 +1,14 @@
-//! Direction-dependent dry friction: dry friction times `1 + a sgn v`, with the same `a` at every
-//! speed.
+//! Direction-dependent dry friction: dry friction multiplied by `1 + a sgn v`, with the same `a` at
+//! every speed.
 //!
-//! A preload by a wedge, a wiper or a helix angle adds to one direction and takes from the other.
-//! It changes the part that jumps with the direction, level and Stribeck peak alike; viscous
-//! friction does not depend on the preload.
+//! A preload by a wedge, a wiper or a helix angle increases dry friction in one direction and
+//! reduces it in the other, including the Stribeck peak. Viscous friction does not depend on the
+//! preload.
 //!
-//! Where the dry level is the same at every speed, position and load, this effect in motion equals
-//! a constant force, `sensor_offset`. At rest only the constant force remains.
+//! If the dry friction is the same at every speed, position and load, this effect in motion is
+//! equivalent to a constant force, `sensor_offset`. Only the constant force acts at rest.
 //!
-//! Source: listed among the departures from symmetry by Armstrong-Helouvry et al. (1994).
+//! Source: Armstrong-Helouvry et al. (1994), who list this asymmetry.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

@@ -1,11 +1,11 @@
-//! Load-dependent dry friction: `+ mu F` on the level that jumps with the direction.
+//! Load-dependent dry friction: `+ mu L` on the friction that jumps with the direction, L the load.
 //!
 //! Source: Amontons (1699) and Coulomb (1785). Hamon, Gautier & Garrec (2010) for gears and
-//! strain-wave drives, whose friction grows with the transmitted torque. It also describes a seal
-//! that the pressure presses on its rod.
+//! strain-wave drives, whose friction grows with the transmitted torque. The effect also describes
+//! a seal that the pressure presses on its rod.
 //!
-//! A law in newtons does not depend on the load; its level here is that without load. A bristle
-//! deflects towards the whole level.
+//! A law in newtons does not depend on the load; with this effect, its dry friction is that without
+//! load. A bristle deflects towards the sum of both.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

@@ -1,10 +1,10 @@
-//! Temperature-dependent dry friction: dry friction times `1 + a (T - T_0)`, T the recorded
+//! Temperature-dependent dry friction: dry friction multiplied by `1 + a (T - T_0)`, T the recorded
 //! temperature.
 //!
-//! Source: Bittencourt & Gunnarsson (2012), who find the static friction of a robot joint linear in
-//! the temperature; Simoni et al. (2019), who use a polynomial. In a preloaded gear, a bearing or a
-//! seal the fit of the parts changes with thermal expansion. The level is limited to zero from
-//! below.
+//! Source: Bittencourt & Gunnarsson (2012), whose measurements show that the static friction of a
+//! robot joint is linear in the temperature; Simoni et al. (2019), who use a polynomial. Thermal
+//! expansion changes the preload of a gear, a bearing or a seal. The dry friction is limited to
+//! values of zero and above.
 
 use super::vogel::REFERENCE;
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
@@ -13,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Dry friction level that depends on the recorded temperature.
+/// Dry friction that depends on the recorded temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct DryTemperatureDependence<T> {
     slope_1_k: T,

@@ -1,5 +1,5 @@
 //! Dwell-time stiction: after a rest of length t_d, `+ a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)`, with
-//! s the sliding distance since.
+//! s the sliding distance since the rest.
 //!
 //! Contacts grow during a rest and are sheared off by sliding.
 //!
@@ -20,7 +20,7 @@ pub struct DwellStiction<T> {
     inverse_distance_1_m: T,
 }
 
-/// Length of the last rest, and the sliding distance since.
+/// Length of the last rest, and the sliding distance since that rest.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     rest_s: T,

@@ -1,16 +1,16 @@
-//! Film memory: a factor on the film's clock.
+//! Film memory: a factor on the rate of the film dynamics.
 //!
-//! The film follows the speed earlier or later than short-bearing theory predicts.
+//! The film follows the speed faster or more slowly than short-bearing theory predicts.
 //!
-//! Source: Cohn (1998): the bearing is of medium length (section 3.2), and the thesis's own
-//! programs run the film on another clock (appendices D and E).
+//! Source: Cohn (1998): the bearing is of medium length (section 3.2), and the control programs use
+//! a different time scale of the film (appendices D and E).
 
 use super::{Effect, Film, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Film that is faster or slower than the law's.
+/// Factor on the rate of the film dynamics.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmMemory<T> {
     factor: T,

@@ -1,10 +1,10 @@
 //! Weight of a link: `+ G sin(theta - theta_0)`.
 //!
-//! Source: any textbook on robots, such as Siciliano et al. (2009), section 7.3. For an axis that
-//! slides at an angle the weight is a constant, which is `sensor_offset`.
+//! Source: any textbook on robots, such as Siciliano et al. (2009), section 7.3. For an inclined
+//! linear axis the weight is constant, which is the effect `sensor_offset`.
 //!
-//! The link of a joint behind other joints turns with all of them. Its angle theta is the angle of
-//! the joint plus [`JournalMotion::weight_offset_rad`].
+//! The link of a joint that follows other joints turns with all of them. The angle theta of such a
+//! link is the angle of the joint plus [`JournalMotion::weight_offset_rad`].
 
 use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -14,7 +14,7 @@ use crate::page::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Force that varies with the angle, once per turn.
+/// Weight of a link: a force that is periodic in the angle of the shaft.
 #[derive(Clone, Copy, Debug)]
 pub struct Gravity<T> {
     weight_n: T,

@@ -9,7 +9,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// An accelerated mass in the force path.
+/// Reflected inertia of a mass in the force path.
 #[derive(Clone, Copy, Debug)]
 pub struct Inertia<T> {
     mass_kg: T,

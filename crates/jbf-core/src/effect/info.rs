@@ -8,20 +8,20 @@ use crate::page::{in_bounds, Parameter};
 use crate::real::Real;
 use core::fmt;
 
-/// Position of an effect in the signal chain.
+/// Stage of the signal chain at which an effect acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Between encoder and journal.
+    /// Motion between encoder and journal.
     Drive,
-    /// Properties of the oil.
+    /// Viscosity of the oil.
     Lubricant,
-    /// Dynamics of the film.
+    /// Dynamics of the film and their dependence on the load.
     Film,
-    /// Between the surfaces.
+    /// Friction between the surfaces.
     Contact,
     /// Friction in addition to that of the bearing.
     Other,
-    /// Between the force and the record.
+    /// Measurement of the force.
     Instrument,
 }
 
@@ -38,43 +38,44 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Description of one effect.
+/// Description of an effect in the catalogue.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Info {
-    /// Fixed name.
+    /// Unique name of the effect in files and options.
     pub name: &'static str,
-    /// Stage of the signal chain.
+    /// Stage of the signal chain at which the effect acts.
     pub stage: Stage,
-    /// Physical meaning in a machine, in one line.
+    /// Physical meaning of the effect in a machine, in one line.
     pub summary: &'static str,
-    /// Equation, in plain characters.
+    /// Equation of the effect, in plain characters.
     pub equation: &'static str,
     /// Source of the equation.
     pub source: &'static str,
     /// Limits of validity of the equation.
     pub limits: &'static str,
-    /// Parameters, in order.
+    /// Descriptions of the parameters, in the order of their values.
     pub parameters: &'static [Parameter],
-    /// Requirements on the law and the record without which the effect has no meaning.
+    /// Requirements on the law and the record; the effect has no meaning if one is not met.
     pub needs: &'static [Need],
-    /// Longest inner step, s, at which the error of the effect is at most a hundredth of a usual
+    /// Longest step, s, with which the error of the effect is at most one per cent of a typical
     /// noise.
     pub longest_step_s: f64,
-    /// True for a force other than friction that the drive's transmission carries: a weight, a
-    /// mass.
+    /// True if the effect is a force other than friction that the transmission of the drive
+    /// carries, such as a weight.
     pub transmitted: bool,
-    /// Name of the effect that this effect repeats; without that effect, this one is equal to it.
+    /// Name of the effect of which this one is a second instance, such as `cogging` for
+    /// `cogging_2`.
     pub further_of: Option<&'static str>,
-    /// True if the first sample of a run does not determine the initial state and the state does
-    /// not decay with time.
+    /// True if neither the first sample of a run nor the passage of time determines the initial
+    /// state.
     ///
-    /// Only a reversal of its input erases such a state.
+    /// Only a reversal of its input erases the influence of such an initial state.
     pub unknown_start: bool,
 }
 
 impl Info {
-    /// Creates an empty description: no parameters, no requirements, steps of 20 ms.
+    /// Creates a description without parameters and requirements, with a longest step of 20 ms.
     pub const fn new(name: &'static str, stage: Stage) -> Self {
         Self {
             name,
@@ -92,13 +93,13 @@ impl Info {
         }
     }
 
-    /// Sets the physical meaning in a machine, in one line.
+    /// Sets the physical meaning of the effect in a machine, in one line.
     pub const fn summary(mut self, text: &'static str) -> Self {
         self.summary = text;
         self
     }
 
-    /// Sets the equation, in plain characters.
+    /// Sets the equation of the effect, in plain characters.
     pub const fn equation(mut self, text: &'static str) -> Self {
         self.equation = text;
         self
@@ -116,7 +117,7 @@ impl Info {
         self
     }
 
-    /// Sets the parameters, in order.
+    /// Sets the descriptions of the parameters, in the order of their values.
     pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
         self.parameters = pages;
         self
@@ -128,48 +129,50 @@ impl Info {
         self
     }
 
-    /// Sets the longest inner step that is still exact, s.
+    /// Sets the longest step with which the effect is sufficiently accurate, s.
     pub const fn longest_step_s(mut self, step_s: f64) -> Self {
         self.longest_step_s = step_s;
         self
     }
 
-    /// Marks a force that the drive's transmission carries.
+    /// Marks the effect as a force that the transmission of the drive carries.
     pub const fn transmitted(mut self) -> Self {
         self.transmitted = true;
         self
     }
 
-    /// Marks the effect as a repetition of the effect of that name.
+    /// Marks the effect as a second instance of the effect `of`.
     pub const fn further(mut self, of: &'static str) -> Self {
         self.further_of = Some(of);
         self
     }
 
-    /// Marks an initial state that the first sample does not determine and that persists.
+    /// Marks the effect as one whose initial state the first sample does not determine and that
+    /// persists.
     pub const fn unknown_start(mut self) -> Self {
         self.unknown_start = true;
         self
     }
 
-    /// Checks a list of values against the bounds.
+    /// Checks the values of the parameters against their bounds.
     ///
-    /// A null value is always allowed, even where it is infinite.
+    /// The null value of a parameter is always valid, even if it is infinite.
     ///
     /// # Errors
-    /// Names the first value that is missing or out of bounds.
+    /// Reports the first value that is missing or out of bounds.
     pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
         in_bounds(self.parameters, values)
     }
 
-    /// First requirement that a law does not meet, if any; the effect then does not apply.
+    /// Returns the first requirement that a law does not meet, if any; the effect then does not
+    /// apply.
     pub fn lacking(&self, law: &law::Info) -> Option<Need> {
         self.needs.iter().copied().find(|need| !need.met_by(law))
     }
 
-    /// True if the value of a parameter is its infinite null.
+    /// Returns true if a parameter has its null value and this value is infinite.
     ///
-    /// The effect is then omitted, which is the only exact form of this limit.
+    /// The effect must then be omitted, which is the only exact form of this limit.
     pub fn absent<T: Real>(&self, values: &[T]) -> bool {
         self.parameters.iter().zip(values).any(|(p, v)| {
             p.null

@@ -1,31 +1,32 @@
-//! Load dependence of the film: U_tr and K0 as powers of the load relative to the rig's load.
+//! Load dependence of the film: U_tr and K0 vary with powers of the load relative to the nominal
+//! load of the rig.
 //!
 //! ```text
-//! U_tr -> U_tr (F/F_0)^p,  K0 -> K0 (F/F_0)^q,  F_0 the rig's load
+//! U_tr -> U_tr (F/F_0)^p,  K0 -> K0 (F/F_0)^q,  F_0 the nominal load
 //! ```
 //!
-//! Cohn (1998) had to fit U_tr and K0 again at each load. Tables 4.2 and 4.3 (two-way motion) have
-//! 0.06 m/s and 7.5e5 at 104 N, 0.05 m/s and 6.25e5 at 83.5 N, which is p = q = 0.83. Tables 4.4
-//! and 4.5 (one-way) give p = 0, q = 1.50.
+//! Cohn (1998) had to fit U_tr and K0 again at each load. Tables 4.2 and 4.3 (motion in both
+//! directions) have 0.06 m/s and 7.5e5 at 104 N, 0.05 m/s and 6.25e5 at 83.5 N, which implies p = q
+//! = 0.83. Tables 4.4 and 4.5 (motion in one direction) imply p = 0, q = 1.50.
 //!
-//! Under the rig's load the effect changes nothing: records at one load do not determine the
-//! exponents.
+//! At the nominal load the effect is zero, so records at one load do not determine the exponents.
 
 use super::{Effect, Info, Loading, Need, Parameter, Rig, Scales, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Largest ratio of the load to the rig's load, up or down, at which the power law is evaluated.
+/// Limit of the power law: load ratios above this value or below its inverse are replaced by the
+/// limit.
 const FURTHEST: f64 = 10.0;
 
-/// Film parameters that change with a power of the load.
+/// Film parameters U_tr and K0 that vary with powers of the load.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadDependence<T> {
     exponents: [T; 2],
 }
 
-/// The last load ratio and its factors.
+/// Load ratio of the last step, with the factors on the film parameters for this ratio.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     share: T,

@@ -1,13 +1,14 @@
-//! Effects between the commanded motion and the recorded friction, one per file, each at one stage
-//! of the signal chain:
+//! Effects between the commanded motion and the recorded friction, one per file.
+//!
+//! Each effect acts at one stage of the signal chain:
 //!
 //! ```text
 //! commanded motion -> drive -> lubricant -> load -> film (the law)
 //!                  -> contact -> other -> instrument
 //! ```
 //!
-//! An effect knows only its own stage. To add an effect, write its file, declare the module below,
-//! and add the effect to the line of its stage in `catalogue.rs`.
+//! An effect is independent of the other stages. To add an effect, write its file, declare the
+//! module below, and add the effect to the line of its stage in `catalogue.rs`.
 
 pub mod backlash;
 pub mod cogging;
@@ -83,47 +84,48 @@ use crate::motion::Motion;
 use crate::real::Real;
 use core::fmt::Debug;
 
-/// Common interface of all effects: a description in the catalogue, a checked constructor, a state.
+/// Effect in a signal chain: a description for the catalogue, a constructor that checks the
+/// parameters, and a state.
 pub trait Effect<T: Real>: Copy + Debug {
-    /// Description in the catalogue.
+    /// Description of the effect in the catalogue.
     const INFO: Info;
-    /// True if a parameter moves the instants at which friction jumps.
+    /// True if a parameter changes the instants at which friction jumps.
     ///
-    /// A fit must not rely on the samples next to such a jump.
+    /// A fit must then exclude the samples next to such a jump.
     const MOVES_JUMPS: bool = false;
-    /// True if the reading of a jump persists.
+    /// True if the predicted force depends on a jump for longer than the step of the jump.
     ///
-    /// An error in the instant of the jump then affects more than the samples next to it.
+    /// An error in the instant of the jump then affects more samples than those next to it.
     const SPREADS_JUMPS: bool = false;
-    /// Parameter along which the likelihood of a record has several peaks; a fit searches for
-    /// higher ones.
+    /// Name of the parameter along which the likelihood may have several maxima; a fit then
+    /// searches for higher ones.
     const PEAKS: Option<&'static str> = None;
-    /// State of the effect; `()` for most.
+    /// State of the effect in the course of a run; `()` for most effects.
     type State: Copy + Debug;
 
     /// Creates the effect from its parameters, in the order of `INFO.parameters`.
     ///
     /// # Errors
-    /// Names the first parameter that is missing or out of its bounds.
+    /// Reports the first parameter that is missing or out of its bounds.
     fn new(parameters: &[T]) -> Result<Self, ParameterError>;
 
-    /// State at the start of a run that begins with `motion`.
+    /// Returns the state at the start of a run that begins with `motion`.
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
 }
 
 /// Properties of the rig that effects need.
 #[derive(Clone, Copy, Debug)]
 pub struct Rig<T> {
-    /// Journal radius, m.
+    /// Journal radius, m; 1 for a linear axis.
     pub radius_m: T,
     /// Number of bearings on the shaft.
     pub count: T,
 }
 
 impl<T: Real> Rig<T> {
-    /// Properties of the rig of a shaft in this bearing.
+    /// Creates the properties of a rig from its bearing.
     ///
-    /// Without a bearing the axis is linear and treated as a rotary one of radius 1 m.
+    /// Without a bearing, the axis is linear and treated as a shaft of radius 1 m.
     pub fn on(bearing: Option<&Bearing>) -> Self {
         Self {
             radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),

@@ -2,10 +2,10 @@
 
 use crate::law;
 
-/// One requirement of an effect.
+/// Requirement of an effect on the law, on other effects or on the record.
 ///
-/// Requirements on the law are checked against its description, those on the record by its reader.
-/// Without the other effect that it requires, an effect changes nothing.
+/// The description of a law states whether the law meets a requirement. Requirements on the record
+/// are checked when the record is read. An effect that requires another effect is zero without it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// The law has a lubricant film.
@@ -31,7 +31,7 @@ pub enum Need {
 }
 
 impl Need {
-    /// Name used in files.
+    /// Returns the name used in files.
     pub const fn name(self) -> &'static str {
         match self {
             Need::Film => "film",
@@ -47,7 +47,8 @@ impl Need {
         }
     }
 
-    /// True if the law meets the requirement, or if the requirement is not on the law.
+    /// Returns true if the law meets the requirement, or if the requirement does not concern the
+    /// law.
     pub const fn met_by(self, law: &law::Info) -> bool {
         match self {
             Need::Film => law.has_film,
@@ -63,8 +64,8 @@ impl Need {
         }
     }
 
-    /// Reason why a law that does not meet the requirement excludes the effect, to follow "the law
-    /// ...".
+    /// Returns the reason why a law that does not meet the requirement excludes the effect, as the
+    /// continuation of "the law ...".
     pub const fn why_not(self) -> &'static str {
         match self {
             Need::Film => "has no lubricant film",

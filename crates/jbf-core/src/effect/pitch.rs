@@ -1,11 +1,12 @@
-//! Pitch of the travel and phase within it, as used by `cogging` and `pitch_ripple`.
+//! Pitch (spatial period) of the travel and phase within it, as used by `cogging` and
+//! `pitch_ripple`.
 
 use super::Parameter;
 use crate::page::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Description of a pitch that the fit must find.
+/// Description of the parameter `pitch`, which is fitted.
 pub(super) const PITCH: Parameter = Parameter::new(
     "pitch",
     "m",
@@ -16,7 +17,7 @@ pub(super) const PITCH: Parameter = Parameter::new(
 .log()
 .start(Start::Pitch);
 
-/// Description of the phase at which a period begins.
+/// Description of the parameter `phase_rad`, the phase at which a period begins.
 pub(super) const PHASE: Parameter = Parameter::new(
     "phase_rad",
     "rad",
@@ -27,7 +28,7 @@ pub(super) const PHASE: Parameter = Parameter::new(
 .period(TAU)
 .signed();
 
-/// Phase angle `2 pi x/p - phi`.
+/// Phase angle `2 pi x/p - phi` of a spatial period.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pitch<T> {
     inverse_1_m: T,
@@ -42,8 +43,8 @@ impl<T: Real> Pitch<T> {
         }
     }
 
-    /// Phase angle at a position (m), without whole periods, which would cost digits in single
-    /// precision.
+    /// Phase angle at a position (m), without whole periods, which would reduce the accuracy in
+    /// single precision.
     #[inline(always)]
     pub(super) fn angle(&self, place_m: T) -> T {
         let periods = place_m * self.inverse_1_m;

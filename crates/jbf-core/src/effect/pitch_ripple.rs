@@ -1,11 +1,11 @@
-//! Friction ripple over a pitch of the travel: friction times `1 + a cos(2 pi x/p - phi)`.
+//! Friction ripple over a pitch of the travel: friction multiplied by `1 + a cos(2 pi x/p - phi)`.
 //!
 //! The pitch is that of a screw's lead, of recirculating balls, or of the teeth of a gear or belt.
-//! The contact pressure changes with the position, and friction with it. `position_ripple` repeats
-//! once per turn of the shaft.
+//! The contact pressure varies with the position, and so does friction. The effect
+//! `position_ripple` has a period of one turn of the shaft.
 //!
-//! Source: Armstrong-Helouvry (1991), chapter 3, whose friction of gears depends on the position at
-//! the pitch of the teeth.
+//! Source: Armstrong-Helouvry (1991), chapter 3, where the friction of gears varies with the pitch
+//! of the teeth.
 
 use super::pitch::{Pitch, PHASE, PITCH};
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
@@ -15,14 +15,14 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Friction that depends on the position within a pitch.
+/// Friction that is periodic in the position with a given pitch.
 #[derive(Clone, Copy, Debug)]
 pub struct PitchRipple<T> {
     depth: T,
     pitch: Pitch<T>,
 }
 
-/// Descriptions of the parameters.
+/// Descriptions of the parameters amplitude, pitch and phase.
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new(
         "a",
@@ -47,7 +47,7 @@ impl<T: Real> Effect<T> for PitchRipple<T> {
         )
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
-    /// Radius, m.
+    /// Radius that converts an angle to a position, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -1,10 +1,10 @@
-//! Second friction ripple in addition to `pitch_ripple`, with its own pitch: friction times `1 + a
-//! cos(2 pi x/p - phi)`.
+//! Second friction ripple in addition to `pitch_ripple`, with its own pitch: friction multiplied by
+//! `1 + a cos(2 pi x/p - phi)`.
 //!
-//! A ripple is rarely a single wave. Its second harmonic has half the pitch; the balls of a screw
-//! recirculate at another pitch than its lead. The fitted pitch shows which it is.
+//! A ripple is rarely a single wave. The second harmonic has half the pitch, and the pitch at which
+//! the balls of a screw recirculate differs from its lead. The fitted pitch distinguishes the two.
 //!
-//! Source: that of `pitch_ripple`.
+//! Source: as for `pitch_ripple`.
 
 use super::pitch_ripple::{PitchRipple, PARAMETERS};
 use super::{Contact, Effect, Info, Need, Rig, Stage};
@@ -13,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Friction that depends on the position within a second pitch.
+/// Friction that is periodic in the position with a second pitch.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondPitchRipple<T>(PitchRipple<T>);
 
@@ -26,7 +26,7 @@ impl<T: Real> Effect<T> for SecondPitchRipple<T> {
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position])
         .further("pitch_ripple");
-    /// Radius, m.
+    /// Radius that converts an angle to a position, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

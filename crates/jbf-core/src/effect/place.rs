@@ -1,8 +1,9 @@
-//! Adapters that make one effect a set of effects: how each stage of the signal chain calls an
-//! effect.
+//! Adapters that convert one effect to a set of effects, and determine how each stage of the signal
+//! chain calls the effect.
 //!
-//! The effects of the catalogue use these adapters, and so can user-defined ones. Outside this
-//! crate, write a type with [`Effect`](super::Effect) and the trait of its stage, and wrap it:
+//! The effects of the catalogue use these adapters, and user-defined effects can use them too. In
+//! another crate, write a type with [`Effect`](super::Effect) and the trait of its stage, and wrap
+//! it:
 //!
 //! ```ignore
 //! let effects = Effects::NONE.with(Beside::<MyWiper<f64>>::new(&[0.5])?);
@@ -20,21 +21,21 @@ use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Adapter for one stage, with an effect that can be built from a list of values.
+/// Adapter of an effect for one stage of the signal chain.
 pub trait Place<T: Real>: EffectSet<T> {
-    /// Description of the effect.
+    /// Description of the wrapped effect.
     const INFO: Info;
 
     /// Creates the effect from its parameters, in the order of its description, and wraps it.
     ///
     /// # Errors
-    /// Names the first parameter that is missing, out of its bounds, or at an infinite null. In the
-    /// last case the effect must be omitted.
+    /// Reports the first parameter that is missing, out of its bounds, or at an infinite null. In
+    /// the last case the effect must be omitted.
     fn new(parameters: &[T]) -> Result<Self, ParameterError>;
 }
 
-/// Defines the adapters: name, trait of the effects, and the stage that their descriptions must
-/// have.
+/// Defines the adapters from their names, the trait of their effects, and the required stage in the
+/// description of an effect.
 ///
 /// The stage is checked at compile time.
 macro_rules! places {
@@ -70,23 +71,25 @@ macro_rules! places {
 }
 
 places! {
-    /// Effect between the encoder and the journal.
+    /// Adapter of an effect on the motion between encoder and journal.
     InDrive: Drive at Stage::Drive,
-    /// Effect on the oil.
+    /// Adapter of an effect on the viscosity of the oil.
     InLubricant: Lubricant at Stage::Lubricant,
-    /// Effect of the load on the parameters of the law.
+    /// Adapter of an effect of the load on the parameters of the law.
     UnderLoad: Loading at Stage::Film,
-    /// Effect on the dynamics of the film.
+    /// Adapter of an effect on the dynamics of the film.
     InFilm: Film at Stage::Film,
-    /// Effect between the surfaces.
+    /// Adapter of an effect on the friction between the surfaces.
     InContact: Contact at Stage::Contact,
-    /// Effect in the drive's transmission, after the contact.
+    /// Adapter of an effect of the transmitted force on the friction, after the other effects on
+    /// the contact.
     InTransmission: Transmission at Stage::Contact,
-    /// Effect that replaces the sign of the motion, last in the contact.
+    /// Adapter of an effect that replaces the jump at a reversal by a deflection, after all other
+    /// effects on the contact.
     AsBristle: Bristle at Stage::Contact,
-    /// Friction in addition to that of the bearing.
+    /// Adapter of friction in addition to that of the bearing.
     Beside: OtherFriction at Stage::Other,
-    /// Effect between the force and its record.
+    /// Adapter of an effect of the instrument, between the force and its record.
     InInstrument: Instrument at Stage::Instrument,
 }
 

@@ -1,7 +1,7 @@
-//! Friction ripple over a turn: friction times `1 + a cos(theta - theta_0)`.
+//! Friction ripple over a turn: friction multiplied by `1 + a cos(theta - theta_0)`.
 //!
 //! Source: Cohn (1998), section 2.4.1, after Armstrong-Helouvry's look-up tables of friction
-//! against joint angle; in a journal, its out-of-roundness.
+//! against joint angle; in a journal, the cause is out-of-roundness.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -10,7 +10,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Friction that depends on the angle of the shaft.
+/// Friction that is periodic in the angle of the shaft.
 #[derive(Clone, Copy, Debug)]
 pub struct PositionRipple<T> {
     depth: T,

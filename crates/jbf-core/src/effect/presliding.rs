@@ -1,11 +1,11 @@
 //! Presliding by bristles: `z' = v - |v| sigma z / f`, friction coefficient `sigma z`, with f the
 //! coefficient that the contact would have in sliding.
 //!
-//! For a law in newtons only the dry part deflects, and the viscous part adds to it, as in Dahl's
-//! and LuGre's laws.
+//! For a law in newtons, only the dry friction deflects and the viscous friction is added, as in
+//! the laws of Dahl and LuGre.
 //!
-//! Source: Dahl (1968); Canudas de Wit et al. (1995); Cohn (1998), section 2.1.3. A reversal
-//! becomes a slope over the distance f / sigma.
+//! Source: Dahl (1968); Canudas de Wit et al. (1995); Cohn (1998), section 2.1.3. Instead of a jump
+//! at a reversal, friction changes over the distance f / sigma.
 //!
 //! With `c = sigma z` this is a relaxation of c towards `f sgn(v)` over distance. A step is
 //! therefore solved exactly in the sliding distance, and any stiffness is stable.
@@ -18,7 +18,7 @@ use crate::page::Start;
 use crate::path::legs;
 use crate::real::Real;
 
-/// Elastic deflection of the contact before it slides.
+/// Presliding: elastic deflection of the contact before it slides.
 #[derive(Clone, Copy, Debug)]
 pub struct Presliding<T> {
     stiffness_1_m: T,

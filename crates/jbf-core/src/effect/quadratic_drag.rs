@@ -1,7 +1,7 @@
 //! Quadratic drag `+ c v |v|`: churning of oil.
 //!
-//! Source: turbulent drag after Rayleigh (1876); the flooded, gravity-fed bearings of Cohn (1998),
-//! section 4.1.
+//! Source: turbulent drag after Rayleigh (1876); Cohn (1998), section 4.1, for flooded, gravity-fed
+//! bearings.
 
 use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -9,7 +9,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Drag that grows with the square of the speed.
+/// Drag that is proportional to the square of the speed.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadraticDrag<T> {
     drag_n_s2_m2: T,

@@ -1,24 +1,26 @@
-//! Macro that generates the catalogue of effects, and its types.
+//! Macro that generates the types of the catalogue of effects, and the look-up of an effect by
+//! name.
 //!
-//! From the list in `catalogue.rs` it generates the two structs with one field per stage, and the
-//! look-up by name.
+//! The list in `catalogue.rs` is its input. The macro generates two structs with one field per
+//! stage: the selected effects, and their states.
 
 use super::place::Place;
 use super::EffectSet;
 use crate::error::ParameterError;
 use crate::real::Real;
 
-/// Effects of one stage of the catalogue, each optional.
+/// Optional effects of one stage of the catalogue, as nested pairs.
 pub(crate) trait Shelf<T: Real>: EffectSet<T> {
-    /// Value without any effect.
+    /// Stage without effects.
     const EMPTY: Self;
 
-    /// True if no effect of this stage is set.
+    /// Returns true if no effect of the stage is selected.
     fn is_empty(&self) -> bool;
 
-    /// Sets the effect of that name, or removes it if a parameter equals its null and is infinite.
+    /// Selects the effect `name` with these parameters, or removes it if a parameter has an
+    /// infinite null value.
     ///
-    /// Returns `None` if this stage has no effect of that name.
+    /// Returns `None` if the stage has no effect with this name.
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
 }
 
@@ -56,7 +58,7 @@ impl<T: Real, P: Place<T>, S: Shelf<T>> Shelf<T> for (Option<P>, S) {
     }
 }
 
-/// Type of a stage's [`Shelf`]: its effects from left to right.
+/// Defines the type that implements [`Shelf`] for the effects of one stage, in their order.
 macro_rules! shelf {
     ($T:ident $Place:ident:) => { () };
     ($T:ident $Place:ident: $module:ident::$Type:ident $(, $more:ident::$More:ident)*) => {
@@ -69,28 +71,28 @@ macro_rules! shelf {
 
 macro_rules! signal_chain {
     ($($stage:ident: $Place:ident [$($module:ident::$Type:ident),* $(,)?],)*) => {
-        /// Type of the shelf of each stage, under the name of the stage.
+        /// Types of the effects of each stage; each type has the name of its stage.
         #[allow(non_camel_case_types)]
         mod line {
             $(pub(crate) type $stage<T> = $crate::effect::registry::shelf!(T $Place: $($module::$Type),*);)*
         }
 
-        /// Any subset of the catalogue, selected by name at run time.
+        /// Effects selected from the catalogue by name at run time.
         ///
-        /// It reserves memory for every effect. A [typed set](super::set) reserves memory only for
-        /// its members.
+        /// The type reserves memory for every effect. A [typed set](super::set) reserves memory
+        /// only for its members.
         #[derive(Clone, Copy, Debug)]
         pub struct Effects<T: Real> {
             $($stage: line::$stage<T>,)*
         }
 
-        /// States of the subset.
+        /// States of the selected effects.
         #[derive(Clone, Copy, Debug)]
         pub struct States<T: Real> {
             $($stage: <line::$stage<T> as EffectSet<T>>::State,)*
         }
 
-        /// Stages of the signal chain in which a subset has an effect.
+        /// Stages of the signal chain at which an effect is selected.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct OccupiedStages {
             $(
@@ -99,13 +101,13 @@ macro_rules! signal_chain {
             )*
         }
 
-        /// All effects, in the order of the signal chain.
+        /// Descriptions of all effects, in the order of the signal chain.
         pub const CATALOGUE: &[Info] = &[
             $($(<$Place<$module::$Type<f64>> as Place<f64>>::INFO,)*)*
         ];
 
-        /// True if a parameter of the effect of that name moves the instants at which friction
-        /// jumps; see [`Effect::MOVES_JUMPS`].
+        /// Returns true if a parameter of the effect changes the instants at which friction jumps;
+        /// see [`Effect::MOVES_JUMPS`].
         pub fn moves_jumps(name: &str) -> bool {
             match name {
                 $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::MOVES_JUMPS,)*)*
@@ -113,8 +115,8 @@ macro_rules! signal_chain {
             }
         }
 
-        /// True if an error in the instant of a jump affects the readings for a long time; see
-        /// [`Effect::SPREADS_JUMPS`].
+        /// Returns true if the predicted force depends on a jump for longer than the step of the
+        /// jump; see [`Effect::SPREADS_JUMPS`].
         pub fn spreads_jumps(name: &str) -> bool {
             match name {
                 $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::SPREADS_JUMPS,)*)*
@@ -122,8 +124,8 @@ macro_rules! signal_chain {
             }
         }
 
-        /// Parameter of the effect of that name along which likelihoods have several peaks; see
-        /// [`Effect::PEAKS`].
+        /// Returns the parameter of the effect along which the likelihood may have several maxima;
+        /// see [`Effect::PEAKS`].
         pub fn peaks(name: &str) -> Option<&'static str> {
             match name {
                 $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::PEAKS,)*)*
@@ -131,7 +133,8 @@ macro_rules! signal_chain {
             }
         }
 
-        /// Rust types of the effect of that name, as in `effect::PLACE` and `effect::NAME::TYPE`.
+        /// Returns the Rust types of the effect `name`: `PLACE` and `TYPE` in `effect::PLACE` and
+        /// `effect::NAME::TYPE`.
         pub fn type_names(name: &str) -> Option<(&'static str, &'static str)> {
             match name {
                 $($(stringify!($module) => Some((stringify!($Place), stringify!($Type))),)*)*
@@ -140,21 +143,21 @@ macro_rules! signal_chain {
         }
 
         impl<T: Real> Effects<T> {
-            /// No effects: the base law.
+            /// No effect: the base law.
             pub const NONE: Self = Self { $($stage: Shelf::EMPTY,)* };
 
-            /// Stages that have an effect.
+            /// Returns the stages at which an effect is selected.
             pub fn occupied_stages(&self) -> OccupiedStages {
                 OccupiedStages { $($stage: !self.$stage.is_empty(),)* }
             }
 
-            /// Adds or replaces the effect of that name.
+            /// Adds or replaces the effect `name`.
             ///
-            /// If the null of a parameter is infinite and the parameter equals it, the effect is
-            /// removed instead.
+            /// The effect is removed instead if the null value of a parameter is infinite and the
+            /// parameter has this value.
             ///
             /// # Errors
-            /// Names the parameter that violates its rule, or reports that there is no such effect.
+            /// Reports the parameter that violates its rule, or an unknown name.
             pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), ParameterError> {
                 $(if let Some(done) = self.$stage.set(name, parameters) {
                     return done;

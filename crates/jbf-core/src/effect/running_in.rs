@@ -1,4 +1,4 @@
-//! Running-in: f_m times `1 + a exp(-s/s_0)`, s the sliding distance in the run.
+//! Running-in: f_m multiplied by `1 + a exp(-s/s_0)`, with s the sliding distance in the run.
 //!
 //! Source: Cohn (1998), section 4.2 (the worn clearance); running-in after Blau (1989).
 
@@ -42,7 +42,7 @@ impl<T: Real> Effect<T> for RunningIn<T> {
             )
             .log(),
         ]);
-    /// Sliding distance, m.
+    /// Sliding distance since the start of the run, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -7,7 +7,7 @@ use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Load cell whose zero drifts at a constant rate.
+/// Drift of the zero of a load cell at a constant rate.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorDrift<T> {
     slope_n_s: T,

@@ -1,22 +1,23 @@
-//! Sensor hysteresis: the reading follows the force only at the ends of a gap of half width w.
+//! Sensor hysteresis: the predicted reading changes only if the force leaves a band of half width w
+//! around it.
 //!
 //! The cause is play or friction in the force path.
 //!
 //! ```text
-//! r -> r held between F - w and F + w
+//! r is limited to values between F - w and F + w
 //! ```
 //!
 //! This is the play operator (Krasnosel'skii & Pokrovskii 1989; Visintin 1994). The rising and the
-//! falling branch of a load cell are 2 w apart, the hysteresis of its data sheet, and the reading
-//! changes branch where the force reverses. It does not depend on time. `backlash` is play in the
+//! falling branch of a load cell differ by 2 w, the hysteresis in its data sheet, and the branch
+//! changes when the force reverses. The effect does not depend on time. `backlash` is play in the
 //! drive, across which no force is transmitted.
 //!
-//! The effect is the first of the instrument: the force reaches the cell through parts that stick
-//! or have play, the cell deflects under that force, and the electronics come last.
+//! This effect precedes the other effects of the instrument: the force reaches the cell through
+//! parts with friction or play, the cell deflects under that force, and the electronics follow.
 //!
-//! The first reading of a run equals its force. At w = 0 the reading equals the force exactly. Its
-//! derivative with respect to w is that of the branch on which the force last moved: -1 rising, +1
-//! falling, 0 before it has moved. The effect is therefore visible in the derivative at w = 0.
+//! The first reading of a run equals the force. At w = 0 the reading equals the force exactly. The
+//! derivative with respect to w is that of the present branch: -1 if the force last rose, +1 if it
+//! fell, 0 before the first change. A score test at w = 0 can therefore detect the effect.
 
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
@@ -24,22 +25,24 @@ use crate::motion::Motion;
 use crate::page::Start;
 use crate::real::Real;
 
-/// Play between the force and the load cell.
+/// Hysteresis of a load cell, from play or friction in the force path.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorHysteresis<T> {
     half_width_n: T,
 }
 
-/// The reading, and its branch, which matters without a gap.
+/// Reading of the load cell, and the branch, which determines the derivative at w = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     held_n: T,
-    /// +1 where the force last rose, -1 where it fell, 0 before it moved.
+    /// Direction of the last change of the force: +1 for a rise, -1 for a fall, 0 before the first
+    /// change.
     branch: i8,
 }
 
 impl<T: Real> SensorHysteresis<T> {
-    /// State under a force that changes monotonically from the last one.
+    /// Returns the state after the force has changed monotonically from its last value to
+    /// `force_n`.
     #[inline(always)]
     fn under(&self, before: State<T>, force_n: T) -> State<T> {
         let (low_n, high_n) = (force_n - self.half_width_n, force_n + self.half_width_n);
@@ -53,7 +56,7 @@ impl<T: Real> SensorHysteresis<T> {
         State { held_n, branch }
     }
 
-    /// Reading of the cell in a state, under this force.
+    /// Returns the reading of the load cell in a state under the force `force_n`, N.
     #[inline(always)]
     fn reading_n(&self, state: State<T>, force_n: T) -> T {
         if self.half_width_n.value() > 0.0 {

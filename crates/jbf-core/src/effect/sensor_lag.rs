@@ -1,4 +1,4 @@
-//! Sensor lag `tau r' = F - r`: a first-order low pass between force and record.
+//! Sensor lag `tau r' = F - r`: a first-order low-pass filter between force and record.
 //!
 //! Source: Cohn (1998), section 4.1 (the load cell's signal is low-passed).
 
@@ -9,7 +9,7 @@ use crate::page::Start;
 use crate::real::Real;
 use crate::relaxation::relax;
 
-/// First-order low pass of the load cell.
+/// First-order low-pass filter of the load cell.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorLag<T> {
     tau_s: T,
@@ -29,7 +29,7 @@ impl<T: Real> Effect<T> for SensorLag<T> {
                 .start(Start::Lateness),
         ]);
     const SPREADS_JUMPS: bool = true;
-    /// Reading, N.
+    /// Reading of the load cell, N.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

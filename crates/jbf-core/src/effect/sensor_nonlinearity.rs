@@ -1,15 +1,15 @@
 //! Sensor nonlinearity `F + c F^3`: a load cell with a curved characteristic.
 //!
-//! For a cell that is symmetric in tension and compression the error is odd, and the cubic is its
-//! first term. Data sheets call it nonlinearity: it is a part of the combined error of VDI/VDE
-//! 2638, and ISO 376 interpolates the reading of a transducer by a cubic. A gain error is not an
-//! effect, because every force parameter of the law absorbs it.
+//! If a cell is symmetric in tension and compression, the error is an odd function of the force,
+//! and the cubic is its first term. Nonlinearity in data sheets is a part of the combined error of
+//! VDI/VDE 2638, and ISO 376 interpolates the reading of a transducer by a cubic. A gain error is
+//! not an effect, because it is equivalent to a change of the force parameters of the law.
 //!
-//! It acts on the force that the cell carries, before the electronics. The filter (`sensor_lag`), a
-//! delayed channel, and a zero or drift of the electronics act after it and are linear.
+//! The effect acts on the force that the cell carries. The filter (`sensor_lag`), a delayed
+//! channel, and the zero and drift of the electronics follow and are linear.
 //!
-//! A cell never reads less under a larger force. Where c is negative the characteristic is constant
-//! beyond its turning point `1/sqrt(-3 c)`, which is far beyond the validity of the form.
+//! The reading never decreases with the force. For negative c, the characteristic is constant
+//! beyond its maximum at `1/sqrt(-3 c)`, far outside the range in which the equation is valid.
 
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
@@ -17,10 +17,10 @@ use crate::motion::Motion;
 use crate::page::Start;
 use crate::real::Real;
 
-/// Largest relative error of a reading, so that the reading stays finite.
+/// Largest relative error of a reading, a limit that keeps the reading finite.
 const MOST: f64 = 1e6;
 
-/// Load cell with a cubic term.
+/// Load cell whose characteristic has a cubic term.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorNonlinearity<T> {
     cubic_1_n2: T,

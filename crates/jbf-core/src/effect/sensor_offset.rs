@@ -1,7 +1,7 @@
-//! Sensor offset `+ b`: the zero of the load cell.
+//! Sensor offset `+ b`: the zero error of the load cell.
 //!
-//! On a drive it is also a constant load, such as the weight on an inclined axis, which the
-//! transmission carries.
+//! On a drive, the offset may also be a constant load that the transmission carries, such as the
+//! weight on an inclined axis.
 //!
 //! Source: any strain-gauge bridge; Cohn (1998), section 4.1.
 

@@ -1,7 +1,9 @@
-//! Shear thinning `Ub -> Ub / (1 + (|U|/U_c)^n)`: long molecules align in fast shear.
+//! Shear thinning `Ub -> Ub / (1 + (|U|/U_c)^n)`: the viscosity falls with the shear rate because
+//! long molecules align.
 //!
-//! Source: Cross (1965), for multigrade oils such as the thesis's 10W-40. Viscosity and transition
-//! speed go together (mu U_tr = const), so Fb and eps_tr stay constant.
+//! Source: Cross (1965), for multigrade oils such as the 10W-40 in Cohn (1998). The transition
+//! speed is inversely proportional to the viscosity (mu U_tr = const), so Fb and eps_tr stay
+//! constant.
 
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

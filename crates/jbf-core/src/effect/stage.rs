@@ -1,7 +1,7 @@
-//! Stages of the signal chain, one trait for each.
+//! Stages of the signal chain, with one or more traits each.
 //!
-//! An effect implements the trait of its stage and [`Effect`]; it does not depend on the other
-//! stages.
+//! An effect implements [`Effect`] and the trait of its stage. An effect does not depend on the
+//! other stages.
 
 use super::{Effect, Rig};
 use crate::friction::Friction;
@@ -11,19 +11,20 @@ use crate::real::Real;
 
 /// Resistance of the journal to the drive: `level sgn(v) + slope v`, N per bearing.
 ///
-/// It is linear in the speed instead of a [`Friction`] at one speed. A drive solves for the future
-/// speed of the journal and needs the friction at speeds other than the present one.
+/// Unlike a [`Friction`], the resistance applies to more than one speed: a drive solves for the
+/// future speed of the journal.
 #[derive(Clone, Copy, Debug)]
 pub struct Resistance<T> {
-    /// Largest force that takes the sign of the motion, N.
+    /// Largest force that has the sign of the motion, N.
     pub level_n: T,
-    /// Slope of the part that grows with speed, N s/m.
+    /// Slope of the force that is proportional to the speed, N s/m.
     pub slope_n_s_m: T,
 }
 
-/// Effect between the encoder and the journal.
+/// Effect on the motion between the encoder and the journal.
 pub trait Drive<T: Real>: Effect<T> {
-    /// Advances over `dt_s` to the driving motion `to`, and returns the motion that is passed on.
+    /// Advances the effect by `dt_s` to the motion `to` of its input, and returns the motion of its
+    /// output.
     fn step(
         &self,
         state: &mut Self::State,
@@ -31,14 +32,14 @@ pub trait Drive<T: Real>: Effect<T> {
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;
-    /// Takes the resistance of the journal at the end of a step of `dt_s`, zero at the start of a
-    /// run.
+    /// Stores the resistance of the journal at the end of a step of `dt_s`, which is zero at the
+    /// start of a run.
     #[inline(always)]
     fn resist(&self, state: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
         let _ = (state, resistance, dt_s);
     }
-    /// Force on the commanded side, as a force on one bearing, N; `None` where it is the friction
-    /// of the journal.
+    /// Returns the force on the commanded side, N per bearing; `None` if it equals the friction of
+    /// the journal.
     #[inline(always)]
     fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
         let _ = (state, motion, rig);
@@ -46,17 +47,17 @@ pub trait Drive<T: Real>: Effect<T> {
     }
 }
 
-/// Effect on the speed that the film sees (its viscosity).
+/// Effect on the viscosity of the film, which is equivalent to a factor on the speed.
 pub trait Lubricant<T: Real>: Effect<T> {
-    /// Factor on `Ub`.
+    /// Returns the factor on the dimensionless speed `Ub`.
     fn factor(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
-    /// Factor on the film's clock.
+    /// Returns the factor on the rate of the film dynamics; the default is one.
     #[inline(always)]
     fn rate(&self, state: &Self::State, journal: &JournalMotion<T>) -> T {
         let _ = (state, journal);
         T::ONE
     }
-    /// Advances over `dt_s`, at the end of which the friction power is `power_w`, W.
+    /// Advances the effect by `dt_s`; the friction power at the end of the step is `power_w`, W.
     #[inline(always)]
     fn step(&self, state: &mut Self::State, power_w: T, dt_s: T) {
         let _ = (state, power_w, dt_s);
@@ -65,23 +66,26 @@ pub trait Lubricant<T: Real>: Effect<T> {
 
 /// Effect of the load on the parameters of the law.
 pub trait Loading<T: Real>: Effect<T> {
-    /// Factors under a load of `share` times the rig's; all one where `share` is one.
+    /// Returns the factors on the parameters of the law for a load of `share` times the nominal
+    /// load of the rig.
+    ///
+    /// All factors are one if `share` is one.
     fn scales(&self, state: &mut Self::State, share: T) -> Scales<T>;
 }
 
-/// Effect on the response time of the film.
+/// Effect on the rate of the film dynamics.
 pub trait Film<T: Real>: Effect<T> {
-    /// Factor on the film's clock.
+    /// Returns the factor on the rate of the film dynamics.
     fn rate(&self, state: &Self::State) -> T;
-    /// Largest factor on the film's clock, at least one.
+    /// Returns the largest factor on the rate of the film dynamics, at least one.
     fn fastest(&self) -> f64;
 }
 
-/// Effect on the friction between the surfaces.
+/// Effect on the sliding friction between the surfaces.
 pub trait Contact<T: Real>: Effect<T> {
-    /// Changes the sliding friction, a coefficient.
+    /// Changes the sliding friction, a coefficient, at the end of a step.
     fn apply(&self, state: &Self::State, journal: &JournalMotion<T>, sliding: &mut Friction<T>);
-    /// Advances over `dt_s` before `apply`.
+    /// Advances the effect by `dt_s`, before `apply` is called.
     #[inline(always)]
     fn step(
         &self,
@@ -94,20 +98,23 @@ pub trait Contact<T: Real>: Effect<T> {
     }
 }
 
-/// Friction of the drive's transmission (gears, a screw) under the force that it carries.
+/// Friction of the transmission (gears, a screw) that depends on the force it carries.
 pub trait Transmission<T: Real>: Effect<T> {
-    /// Changes the sliding friction under a transmitted force, N, which is positive where it
-    /// requires a push in positive direction.
+    /// Changes the sliding friction, a coefficient, according to the transmitted force, N.
+    ///
+    /// The force is positive if the drive must push in the positive direction.
     fn apply(&self, state: &Self::State, transmitted_n: T, sliding: &mut Friction<T>);
 }
 
-/// Effect that replaces the sign of the motion by a deflection: the last step of the contact stage.
+/// Effect that replaces the jump of friction at a reversal by a deflection, after all other effects
+/// on the contact.
 pub trait Bristle<T: Real>: Effect<T> {
-    /// Coefficient at the start of a run; fully deflected if the run starts in motion.
+    /// Returns the signed friction coefficient at the start of a run, fully deflected if the run
+    /// starts in motion.
     fn first(&self, state: &mut Self::State, journal: &JournalMotion<T>, magnitude: T) -> T;
-    /// Advances over `dt_s` and returns the signed coefficient.
+    /// Advances the bristle by `dt_s` and returns the signed friction coefficient.
     ///
-    /// The sliding coefficient goes from the first magnitude to the second.
+    /// `magnitude` contains the sliding coefficients at the start and at the end of the step.
     fn step(
         &self,
         state: &mut Self::State,
@@ -118,29 +125,29 @@ pub trait Bristle<T: Real>: Effect<T> {
     ) -> T;
 }
 
-/// Friction other than that of the bearing.
+/// Friction in addition to that of the bearing.
 pub trait OtherFriction<T: Real>: Effect<T> {
-    /// Friction force, N.
+    /// Returns the friction force, N.
     fn friction_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> Friction<T>;
 }
 
-/// Force during a step, as seen by an instrument.
+/// Force in the course of a step, the input and output of an instrument.
 ///
-/// Friction jumps where a rigid journal starts, stops or reverses. The friction inside the step
-/// then differs from that at the sample, and an instrument with memory must follow the values
-/// inside.
+/// Friction jumps when a rigid journal starts, stops or reverses. The friction inside the step then
+/// differs from that at the sample, and an instrument with memory must follow the values inside the
+/// step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signal<T> {
-    /// Force just after the beginning of the step, N.
+    /// Force immediately after the start of the step, N.
     pub begin_n: T,
-    /// Force just before the end of the step, N.
+    /// Force immediately before the end of the step, N.
     pub end_n: T,
-    /// Force at the end of the step, N.
+    /// Force at the sample that ends the step, N.
     pub now_n: T,
 }
 
 impl<T: Real> Signal<T> {
-    /// Signal with a constant added.
+    /// Returns the signal with a constant (N) added.
     #[inline]
     pub fn shifted(self, by_n: T) -> Self {
         Self {
@@ -151,16 +158,17 @@ impl<T: Real> Signal<T> {
     }
 }
 
-/// Effect between the force and its record.
+/// Effect of the instrument, between the force and its record.
 pub trait Instrument<T: Real>: Effect<T> {
-    /// Constant force in the readings, N, which a drive's transmission may carry.
+    /// Returns the constant force in the readings, N, which the transmission of a drive may carry;
+    /// the default is zero.
     #[inline(always)]
     fn constant_n(&self) -> T {
         T::ZERO
     }
 
-    /// First reading of a run that begins with `force_n`.
+    /// Returns the first reading of a run that begins with the force `force_n`, N.
     fn first(&self, state: &mut Self::State, force_n: T) -> T;
-    /// Output signal of the instrument for a step of `dt_s` that ends at `time_s`.
+    /// Returns the output of the instrument for a step of `dt_s` that ends at `time_s`.
     fn step(&self, state: &mut Self::State, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T>;
 }

@@ -1,8 +1,8 @@
 //! Direction-dependent Stribeck peak: `+ c exp(-(|v|/v_s)^n)`.
 //!
 //! Lips, wipers and skewed rollers draw in a film in one direction and scrape it off in the other.
-//! At high speed the two directions have the same friction, at low speed they differ. `c` is half
-//! the excess of the peak in positive motion.
+//! The friction of the two directions differs at low speed only. `c` is half the difference of the
+//! peaks in positive and negative motion.
 //!
 //! Source: Stribeck's curve in the form of Bo & Pavelescu (1982), with one height per direction;
 //! Armstrong-Helouvry et al. (1994), who list direction-dependent friction.

@@ -1,4 +1,5 @@
-//! Stribeck excess `+ a exp(-(|v|/v_s)^n)`: boundary lubrication that the asperity law lacks.
+//! Stribeck excess `+ a exp(-(|v|/v_s)^n)`: additional friction at low speed by boundary
+//! lubrication, which the asperity model does not include.
 //!
 //! Source: Stribeck's curve in the exponential form of Tustin (n = 1), Bo & Pavelescu (0.5 to 1)
 //! and Armstrong-Helouvry (2); Cohn (1998), sections 2.1.2 and 2.2.
@@ -10,7 +11,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Friction in excess of the law at low speed.
+/// Friction at low speed in addition to that of the law.
 #[derive(Clone, Copy, Debug)]
 pub struct StribeckExcess<T> {
     height: T,

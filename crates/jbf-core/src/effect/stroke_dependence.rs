@@ -1,17 +1,17 @@
-//! Dry friction that varies smoothly along the stroke: dry friction times `1 + s(x)`.
+//! Dry friction that varies smoothly along the stroke: dry friction multiplied by `1 + s(x)`.
 //!
-//! Examples are a screw that is tighter in its middle, a guide that is not straight, and a rod that
-//! is worn where it mostly works. The contact pressure changes slowly with the position, and dry
-//! friction with it. Variation that repeats with a pitch is `pitch_ripple`.
+//! Examples are a screw with more preload in its middle, a guide that is not straight, and a rod
+//! with local wear. The contact pressure, and with it the dry friction, varies slowly with the
+//! position. Periodic variation is described by `pitch_ripple`.
 //!
 //! With `u` from -1 to 1 over the stroke, `s` is the sum of the first six waves whose slope
-//! vanishes at both ends: `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`. Each has zero
-//! mean over the stroke, and none can replace another or the dry level. Beyond the ends friction is
-//! constant.
+//! vanishes at both ends: `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`. Each wave has
+//! zero mean over the stroke, and the waves are orthogonal to each other and to the dry friction.
+//! Beyond the ends, friction is constant.
 //!
-//! A fit places the ends slightly beyond the travel of its runs, because friction need not level
-//! off where a recording ends. The shortest wave then occurs two and a half times within the
-//! recorded travel. Shorter variation is described by a pitch.
+//! A fit places the ends slightly beyond the travel of its runs, because friction may still vary at
+//! the ends of a recording. The recorded travel then contains two and a half of the shortest waves.
+//! Shorter variation is described by `pitch_ripple`.
 //!
 //! Source: Armstrong-Helouvry (1991), chapter 3, whose arm has a position-dependent friction in
 //! each joint; Popovic & Goldenberg (1998), who model it by its Fourier series.
@@ -24,7 +24,7 @@ use crate::page::Start;
 use crate::real::Real;
 use core::f64::consts::FRAC_PI_2;
 
-/// Dry friction as a function of the position.
+/// Dry friction that varies with the position along the stroke.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokeDependence<T> {
     sizes: [T; 6],
@@ -32,7 +32,7 @@ pub struct StrokeDependence<T> {
     inverse_half_1_m: T,
 }
 
-/// Description of the amplitude of an even or an odd wave.
+/// Description of the amplitude of one wave.
 const fn wave(name: &'static str, meaning: &'static str) -> Parameter {
     Parameter::new(name, "-", meaning, [-2.0, 2.0], &[0.1]).null(0.0)
 }
@@ -66,7 +66,7 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
                 .stated(),
         ])
         .needs(&[Need::NoFilm, Need::Position]);
-    /// Radius, m.
+    /// Radius that converts an angle to a position, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -1,10 +1,10 @@
-//! Thermal thinning `Ub -> Ub exp(-beta T)`, `T' = q |F v| - T/tau`: friction warms the oil, which
+//! Thermal thinning `Ub -> Ub exp(-beta T)`, `T' = q |F v| - T/tau`: friction heats the oil, which
 //! lowers its viscosity.
 //!
 //! Source: Reynolds's exponential viscosity law; Cohn (1998), section 4.2, assumes a constant
-//! temperature. Viscosity and transition speed go together (mu U_tr = const), so Fb and eps_tr stay
-//! constant. A friction record determines only the product beta q, so the state is `beta T` and the
-//! product is the parameter.
+//! temperature. The transition speed is inversely proportional to the viscosity (mu U_tr = const),
+//! so Fb and eps_tr stay constant. A friction record determines only the product beta q, so the
+//! state is `beta T` and the product is the parameter.
 
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -12,17 +12,17 @@ use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use crate::relaxation::relax;
 
-/// Viscosity that falls as friction warms the oil.
+/// Viscosity that falls when friction heats the oil.
 #[derive(Clone, Copy, Debug)]
 pub struct ThermalThinning<T> {
     rate_1_j: T,
     tau_s: T,
 }
 
-/// Temperature of the film and the friction power.
+/// Temperature rise of the film, and the friction power.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// Loss of log viscosity, `beta T`.
+    /// Decrease of the logarithm of the viscosity, `beta T`.
     thinned: T,
     /// Friction power at the end of the last step, W.
     power_w: T,

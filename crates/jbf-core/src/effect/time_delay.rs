@@ -1,9 +1,9 @@
-//! Time delay `r(t) = F(t - tau)`: the record of the force is delayed without a change of shape.
+//! Time delay `r(t) = F(t - tau)`: the recorded force is delayed without a change of shape.
 //!
 //! Source: Hess & Soom (1990) for friction that lags the speed by a fixed time; in the instrument
 //! it is the skew between two channels, a linear-phase filter, or a bus.
 //!
-//! A low pass rounds the signal that it delays; this effect does not. The force is stored at the
+//! Unlike a low-pass filter, this effect does not smooth the signal. The force is stored at the
 //! ends of the steps and interpolated linearly. A delay of any length, including less than a
 //! sample, therefore has a derivative. A jump of the force becomes a ramp of one step in the
 //! reading.
@@ -15,13 +15,13 @@ use crate::motion::Motion;
 use crate::page::Start;
 use crate::real::Real;
 
-/// Pure time delay of the friction record relative to the motion record.
+/// Time delay of the recorded force relative to the recorded motion.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeDelay<T> {
     tau_s: T,
 }
 
-/// Recent history of the force, and the reading.
+/// Recent history of the force, and the delayed reading.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     line: DelayLine<T>,
@@ -65,7 +65,8 @@ impl<T: Real> Effect<T> for TimeDelay<T> {
 }
 
 impl<T: Real> Instrument<T> for TimeDelay<T> {
-    /// The force before the run is taken to equal the force at its start.
+    /// Returns the first reading of a run; the force before the run is assumed to equal that at its
+    /// start.
     fn first(&self, state: &mut State<T>, force_n: T) -> T {
         state.line.push(force_n, T::ZERO, self.tau_s);
         state.reading_n = force_n;

@@ -1,19 +1,19 @@
 //! Friction proportional to the transmitted force: `+ mu |F_t| sgn(v)`.
 //!
 //! `F_t` is the force of other effects of the chain that the transmission carries: a weight
-//! (`gravity`), a mass (`inertia`), a constant load (`sensor_offset`). A recorded load is the
-//! subject of `dry_load_dependence`; that effect already contains the friction of a push `k L`.
-//! This effect is for a load that is not recorded and that the model estimates as well.
+//! (`gravity`), a mass (`inertia`), a constant load (`sensor_offset`). For a recorded load, use
+//! `dry_load_dependence`, which includes the friction of a force `k L`. This effect is for a load
+//! that is not recorded and that the model also estimates.
 //!
-//! Gears and screws lose a share `mu_d` of `F_t` where they drive (`F_t v > 0`) and another share
-//! `mu_b` where they are driven back. With half their sum `mu` and half their difference `d`,
+//! Gears and screws lose a fraction `mu_d` of `F_t` in forward driving (`F_t v > 0`) and another
+//! fraction `mu_b` in back-driving. With half their sum `mu` and half their difference `d`,
 //! friction is `mu |F_t| sgn(v) + d F_t`, in motion and at rest. The difference term is
 //! proportional to the load itself. No record of the drive force distinguishes `1 + d` from a
 //! larger weight or mass (for a recorded load it is the `k` of `zero_load_dependence`). It
 //! therefore has no parameter.
 //!
 //! The data determine `mu` divided by `1 + d`. With this quotient as `mu`, the product of the two
-//! efficiencies is `(1 - mu)/(1 + mu)`; from one on the drive is self-locking.
+//! efficiencies is `(1 - mu)/(1 + mu)`, and the drive is self-locking for `mu` of one or more.
 //!
 //! Source: Hamon, Gautier & Garrec (2010) for gears and screws; Wolf & Iskandar (2018) for
 //! strain-wave gears.
@@ -24,7 +24,7 @@ use crate::friction::Friction;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Friction proportional to the transmitted force.
+/// Friction proportional to the force that the transmission carries.
 #[derive(Clone, Copy, Debug)]
 pub struct TorqueProportional<T> {
     share: T,

@@ -14,7 +14,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Viscous slope that differs between the two directions.
+/// Viscous friction whose slope differs between the two directions.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousAsymmetry<T> {
     slope_n_s_m: T,

@@ -1,8 +1,8 @@
-//! Load-dependent viscous friction: `+ c L v`.
+//! Load-dependent viscous friction: `+ c L v`, L the load.
 //!
 //! Source: Hamon, Gautier & Garrec (2010) and Wolf & Iskandar (2018) for robot joints, whose
-//! viscous slope grows with the transmitted torque. It also describes a seal that the pressure
-//! presses on its rod.
+//! viscous slope grows with the transmitted torque. The effect also describes a seal that the
+//! pressure presses on its rod.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -10,7 +10,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Viscous slope proportional to the load, in addition to that of the law.
+/// Viscous friction proportional to the load, in addition to that of the law.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousLoadDependence<T> {
     slope_s_m: T,

@@ -1,5 +1,5 @@
-//! Temperature-dependent viscous friction: viscous friction times `exp(B/(T - C) - B/(T_0 - C))`, T
-//! the recorded temperature.
+//! Temperature-dependent viscous friction: viscous friction multiplied by `exp(B/(T - C) - B/(T_0 -
+//! C))`, T the recorded temperature.
 //!
 //! Source: Vogel (1921), for the viscosity of an oil or of the base oil of a grease; see
 //! `vogel.rs`. Bittencourt & Gunnarsson (2012) find that the viscous friction of a robot joint
@@ -12,7 +12,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Viscous slope that depends on the recorded temperature.
+/// Viscous friction that depends on the recorded temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousTemperatureDependence<T> {
     relation: Vogel<T>,

@@ -5,8 +5,8 @@
 //! Heimann (2001) and Bona & Indri (2005) for robot joints, whose viscous friction flattens. The
 //! latter use a power below one, whose slope at rest is unbounded.
 //!
-//! w is the inverse of the speed at which the friction is half of the linear value. Its null value
-//! zero is within reach of a fit, whereas that of the speed would be infinite.
+//! w is the inverse of the speed at which the friction is half of the linear value. A fit can reach
+//! the null value of w, zero, whereas the null value of the speed would be infinite.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

@@ -5,25 +5,27 @@
 //! ```
 //!
 //! Source: Vogel (1921), Fulcher (1925), Tammann & Hesse (1926). B determines how steeply the
-//! viscosity falls, C the temperature at which the oil would solidify. C = -95 C is valid for
-//! mineral oils of every grade (Crouch & Cameron 1961), which leaves one parameter.
+//! viscosity falls with temperature, and C is the temperature at which the viscosity would become
+//! infinite. C = -95 C is valid for mineral oils of every grade (Crouch & Cameron 1961), so only B
+//! is fitted.
 //!
-//! Over 20 to 30 K a record cannot distinguish C from B. An error of C by 15 K changes the
-//! viscosity by less than 2 % there, once B is fitted with it. Walther's relation (ASTM D341) also
-//! has two parameters and is not better between 0 and 100 C: the tests compare the two.
+//! Over 20 to 30 K a record cannot distinguish C from B. With B fitted, an error of 15 K in C
+//! changes the viscosity by less than 2 % in such a range. Walther's relation (ASTM D341) also has
+//! two parameters and is not better between 0 and 100 C: the tests compare the two.
 
 use crate::page::{Parameter, Start};
 use crate::real::Real;
 
-/// Vogel's C of mineral oils, C.
+/// Vogel's constant C for mineral oils, C.
 const OILS_C: f64 = -95.0;
-/// Smallest distance from C, K, at which the relation is evaluated; oil solidifies long before.
+/// Smallest distance from C at which the relation is evaluated, K; oil solidifies at a much larger
+/// distance.
 const NEAREST_K: f64 = 20.0;
-/// Largest deviation of the natural logarithm of the viscosity from its reference. Beyond it no oil
-/// runs in the same bearing.
+/// Limit of the natural logarithm of the relative viscosity; a larger change is outside the range
+/// of any oil in a bearing.
 const FURTHEST: f64 = 7.0;
 
-/// Description of a reference temperature.
+/// Description of the parameter `T_0_c`, the reference temperature.
 pub(super) const REFERENCE: Parameter = Parameter::new(
     "T_0_c",
     "C",
@@ -34,7 +36,7 @@ pub(super) const REFERENCE: Parameter = Parameter::new(
 .start(Start::ReferenceTemperature)
 .stated();
 
-/// Description of Vogel's C.
+/// Description of the parameter `C_c`, Vogel's constant C.
 pub(super) const C: Parameter = Parameter::new(
     "C_c",
     "C",
@@ -44,19 +46,19 @@ pub(super) const C: Parameter = Parameter::new(
 )
 .stated();
 
-/// The relation with its parameters.
+/// Vogel relation with its constants and the reference temperature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vogel<T> {
-    /// Vogel's B, K.
+    /// Vogel's constant B, K.
     pub b_k: T,
-    /// Vogel's C, C.
+    /// Vogel's constant C, C.
     pub c_c: T,
-    /// Temperature at which the viscosity is that of the law, C.
+    /// Reference temperature, at which the viscosity is that of the law, C.
     pub reference_c: T,
 }
 
 impl<T: Real> Vogel<T> {
-    /// Viscosity relative to that at the reference temperature; one without a temperature.
+    /// Viscosity relative to that at the reference temperature; one if no temperature was recorded.
     #[inline(always)]
     pub(super) fn factor(&self, temperature_c: Option<T>) -> T {
         let Some(temperature_c) = temperature_c else {

@@ -1,11 +1,12 @@
-//! Oil that thins with the recorded temperature: `Ub -> Ub m`, `t -> t/m`, `m = exp(B/(T - C) -
-//! B/(T_0 - C))`.
+//! Viscosity of the oil as a function of the recorded temperature: `Ub -> Ub m`, `t -> t/m`, `m =
+//! exp(B/(T - C) - B/(T_0 - C))`.
 //!
-//! Source: Vogel (1921); see `vogel.rs` for the relation and its C. Viscosity and transition speed
-//! go together (mu U_tr = const), so Fb and eps_tr stay constant, as in `thermal_thinning`, whose
-//! temperature is not recorded. The film's clock, U_tr/R, is proportional to 1/mu: thin oil is
-//! squeezed out sooner. On the journal's clock the law of another oil is then this law at another
-//! temperature. Two oils, or two days, are therefore one model.
+//! Source: Vogel (1921); see `vogel.rs` for the relation and the constant C. The transition speed
+//! is inversely proportional to the viscosity (mu U_tr = const), so Fb and eps_tr stay constant, as
+//! in `thermal_thinning`, whose temperature is not recorded. The rate of the film dynamics, U_tr/R,
+//! is proportional to 1/mu: thin oil is squeezed out faster. With the time scale
+//! [`crate::Clock::Journal`], a change of the oil is therefore equivalent to a change of the
+//! temperature, and one model describes runs with several oils.
 
 use super::vogel::{Vogel, C, REFERENCE};
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};

@@ -1,11 +1,11 @@
-//! Warm-up: friction times `1 + a exp(-t/tau)`, t since the start of the run.
+//! Warm-up: friction multiplied by `1 + a exp(-t/tau)`, with t the time since the start of the run.
 //!
-//! The grease and oil of a gearbox are warmed by the motor, the bearings or the sun. All its
-//! friction falls with time, whether it slides or not. Related effects:
+//! The motor, the bearings or the sun heat the grease and oil of a gearbox. Its friction falls with
+//! time, in motion and at rest. Related effects:
 //!
 //! - `running_in` depends on the sliding distance and changes only the dry level.
-//! - `thermal_thinning` is that of a film, warmed only by its own friction.
-//! - `sensor_drift` is a force in one direction.
+//! - `thermal_thinning` describes a film that is heated only by its own friction.
+//! - `sensor_drift` is a force that does not change sign with the motion.
 //! - `dry_temperature_dependence` and `viscous_temperature_dependence` are more informative where a
 //!   temperature was recorded.
 //!
@@ -20,7 +20,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Excess of friction that decays with time.
+/// Excess friction that decays with time.
 #[derive(Clone, Copy, Debug)]
 pub struct WarmUp<T> {
     excess: T,

@@ -1,4 +1,4 @@
-//! Force proportional to the load and independent of the direction of motion: `+ k L`.
+//! Force proportional to the load and independent of the direction of motion: `+ k L`, L the load.
 //!
 //! Source: a pressure that acts on a rod's area; a screw or a guide that is not aligned with its
 //! load. Hamon, Gautier & Garrec (2010) for the asymmetry of loaded transmissions.

@@ -1,21 +1,22 @@
 //! Bristle that deflects towards a level over the sliding distance, `dF/dx = sigma (1 - F/(level
 //! sgn v))`.
 //!
-//! It is used by LuGre's law and by a contact that deflects under any law.
+//! The LuGre law and the effect `presliding` use this bristle.
 
 use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 use crate::relaxation::relax;
 
-/// Smallest level towards which a bristle deflects; prevents a division by zero.
+/// Smallest friction level towards which a bristle deflects, a limit that prevents a division by
+/// zero.
 pub(crate) const LEAST_LEVEL: f64 = 1e-9;
 
-/// Force at the end of a leg that begins with `force`, of a bristle of `stiffness` (force per
-/// length).
+/// Force of a bristle at the end of a leg (a part of a step in one direction) that begins with
+/// `force`.
 ///
-/// The solution is exact in the sliding distance for a level that changes linearly, so any
-/// stiffness is stable.
+/// `stiffness` is the force per length. The solution is exact in the sliding distance for a level
+/// that changes linearly, so any stiffness is stable.
 #[inline(always)]
 pub(crate) fn bent<T: Real>(force: T, leg: &Leg<T>, stiffness: T) -> T {
     if leg.distance_m.value() <= 0.0 {
@@ -26,10 +27,10 @@ pub(crate) fn bent<T: Real>(force: T, leg: &Leg<T>, stiffness: T) -> T {
     relax(force, target, stiffness * leg.distance_m / mean)
 }
 
-/// Advances a bristle of one force through a step.
+/// Advances the `force` of a bristle through a step by `slide`, and returns the force at its end.
 ///
-/// The level at a reversal is the mean of its ends, as for a law whose dry friction does not depend
-/// on the speed. In a step of zero length the bristle slides.
+/// The level at a reversal is the mean of those at the ends of the step, as for a law whose dry
+/// friction does not depend on the speed. In a step of zero length the bristle slides.
 #[inline(always)]
 pub(crate) fn along<T: Real>(
     force: &mut T,

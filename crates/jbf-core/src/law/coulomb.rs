@@ -3,11 +3,11 @@
 //! Source: Coulomb (1785); Morin (1833) for static friction; Reynolds (1886) for the viscous part;
 //! Cohn (1998), section 2.1.1.
 //!
-//! Static friction is set-valued: it acts where the journal *stays* at rest and an elastic element
-//! pulls at it. A compliant drive does so (`drive_compliance`): the journal then holds up to `F_s`
-//! and slides on at `F_c`. Under a speed imposed by a rigid drive, a rest has no force of its own
-//! and the breakaway takes no time. `F_s` is then not identifiable, and a fit reports that it did
-//! not change. A reversal without a stop is not a rest.
+//! Static friction is set-valued: it acts while the journal *stays* at rest under the force of an
+//! elastic element, such as a compliant drive (`drive_compliance`). The journal then sticks up to
+//! `F_s` and slides with `F_c`. With a rigid drive, which imposes the speed, the friction at rest
+//! is undetermined and breakaway takes no time. `F_s` is then not identifiable, and a fit holds it
+//! constant. A reversal without a stop is not a rest.
 
 use super::newtons::{in_newtons, moving, F_C, F_S, F_V};
 use super::{Info, Law, Named, SteadyCurve};
@@ -17,7 +17,7 @@ use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::real::Real;
 
-/// Static, kinetic and viscous friction.
+/// Law with static, kinetic and viscous friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Coulomb<T> {
     kinetic_n: T,

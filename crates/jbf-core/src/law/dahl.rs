@@ -1,9 +1,9 @@
-//! Dahl's law `dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v))`, x the sliding
+//! Dahl law `dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v))`, x the sliding
 //! distance.
 //!
-//! Source: Dahl (1968, 1977). i = 1 is the usual form; i below 1 is ductile (the force reaches F_c
-//! after a finite distance), i above 1 brittle (it approaches F_c slowly). As sigma_0 grows the law
-//! becomes Coulomb's.
+//! Source: Dahl (1968, 1977). The usual exponent is i = 1. For i below 1 (ductile), the force
+//! reaches F_c after a finite distance; for i above 1 (brittle), it approaches F_c slowly. In the
+//! limit of large sigma_0, the law is that of Coulomb.
 //!
 //! The law is rate-independent, so a step is solved in the sliding distance, in closed form for any
 //! i. With `u = 1 - (F/F_c) sgn(v)` and `k = sigma_0/F_c`:
@@ -23,7 +23,7 @@ use crate::motion::JournalMotion;
 use crate::path::Leg;
 use crate::real::Real;
 
-/// Bristle that deflects before it slides and depends on distance only.
+/// Bristle whose deflection depends on the sliding distance only.
 #[derive(Clone, Copy, Debug)]
 pub struct Dahl<T> {
     coulomb_n: T,
@@ -33,7 +33,7 @@ pub struct Dahl<T> {
 }
 
 impl<T: Real> Dahl<T> {
-    /// Force at the end of a leg that begins with `force_n`.
+    /// Force at the end of a leg (a part of a step in one direction) that begins with `force_n`, N.
     #[inline(always)]
     fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
         if leg.distance_m.value() <= 0.0 {
@@ -55,7 +55,7 @@ impl<T: Real> Dahl<T> {
         way * (mean * (T::ONE - left) + change * (T::of(0.5) * (T::of(2.0) - gain) - gain / ratio))
     }
 
-    /// Remainder of `u > 0` after `ratio = k s`.
+    /// Value of `u` after the distance s with `ratio = k s`, from its value at s = 0.
     #[inline(always)]
     fn decay(&self, u: T, ratio: T) -> T {
         // So close to sliding, powers below one would lose their digits.

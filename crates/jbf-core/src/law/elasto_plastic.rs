@@ -1,4 +1,4 @@
-//! Single-state elasto-plastic law: purely elastic up to a breakaway force, plastic beyond.
+//! Single-state elasto-plastic law: elastic up to a breakaway force, then plastic.
 //!
 //! ```text
 //! dF/dx = sigma_0                                     while F sgn(v) < b F_c
@@ -7,15 +7,15 @@
 //!
 //! Source: Dupont, Hayward, Armstrong & Altpeter (2002), `z' = v (1 - alpha(z, v) sgn(v) z/z_ss)`
 //! with `F = sigma_0 z`. There alpha = 0 up to the breakaway displacement `z_ba = b F_c/sigma_0`
-//! and on unloading, and 1 at `z_ss = F_c/sigma_0`. They leave the rise of alpha between open and
-//! use half a sine. Here it is `alpha = (1 - z_ba/|z|)/(1 - b)`: the force then approaches its
-//! level exponentially. A step is solved in the sliding distance, up to breakaway and exactly
-//! beyond it, so any step length is stable.
+//! and on unloading, and 1 at `z_ss = F_c/sigma_0`. The authors do not prescribe the increase of
+//! alpha between these points, and use half a sine. Here it is `alpha = (1 - z_ba/|z|)/(1 - b)`:
+//! the force then approaches its level exponentially. A step is solved exactly in the sliding
+//! distance, first up to breakaway and then beyond it, so any step length is stable.
 //!
-//! A load or a vibration that stays below the breakaway causes no lasting displacement, where
-//! Dahl's law and LuGre drift. As b approaches 1 the law becomes a spring and a slider. A Stribeck
-//! fall is `stribeck_excess`, a level that grows with the load `dry_load_dependence`. Both change
-//! F_c and leave sigma_0 and b constant.
+//! A load or a vibration that stays below the breakaway causes no lasting displacement, whereas the
+//! laws of Dahl and LuGre drift. As b approaches 1 the law becomes a spring and a slider. The
+//! effect `stribeck_excess` adds a Stribeck curve, and `dry_load_dependence` a friction level that
+//! grows with the load. Both change F_c and leave sigma_0 and b constant.
 
 use super::bristle::{along, bent};
 use super::newtons::{in_newtons, moving, stiffness, F_C, F_V};
@@ -29,7 +29,7 @@ use crate::page::Parameter;
 use crate::path::Leg;
 use crate::real::Real;
 
-/// Contact that is elastic, then plastic.
+/// Law with an elastic and a plastic deflection of the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct ElastoPlastic<T> {
     coulomb_n: T,
@@ -39,7 +39,7 @@ pub struct ElastoPlastic<T> {
 }
 
 impl<T: Real> ElastoPlastic<T> {
-    /// Force at the end of a leg that begins with `force_n`.
+    /// Force at the end of a leg (a part of a step in one direction) that begins with `force_n`, N.
     #[inline(always)]
     fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
         let (way, [begin, end]) = (leg.direction, leg.level);

@@ -11,9 +11,9 @@
 //! 2.3.1. The decay of sigma_1 with speed keeps the law passive where `sigma_1(v) |v| < 4 sigma_0
 //! g(v)`. This holds everywhere if `sigma_1 v_d < 9 min(F_c, F_s)`.
 //!
-//! With `y = sigma_0 z` this is a relaxation of y towards `sigma_0 g sgn(v)` over the sliding
-//! distance at the rate `1/g`. It is solved exactly in the distance, for a level that changes
-//! linearly. Any step is therefore stable, and short steps are accurate to second order.
+//! With `y = sigma_0 z`, y relaxes towards `sigma_0 g sgn(v)` over the sliding distance at the rate
+//! `1/g`. The solution is exact in the distance if the level changes linearly. Any step is
+//! therefore stable, and short steps are accurate to second order.
 
 use super::bristle::{bent, LEAST_LEVEL};
 use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
@@ -27,7 +27,7 @@ use crate::page::Start;
 use crate::path::legs;
 use crate::real::Real;
 
-/// The LuGre law.
+/// LuGre law with Stribeck curve and viscous friction.
 #[derive(Clone, Copy, Debug)]
 pub struct LuGre<T> {
     coulomb_n: T,
@@ -40,7 +40,7 @@ pub struct LuGre<T> {
 }
 
 impl<T: Real> LuGre<T> {
-    /// Level `sigma_0 g(v)`, N.
+    /// Level `sigma_0 g(v)` of the bristle force in steady sliding, N.
     #[inline(always)]
     fn level(&self, velocity_m_s: T) -> T {
         let share = velocity_m_s / self.stribeck_m_s;
@@ -49,7 +49,7 @@ impl<T: Real> LuGre<T> {
         self.coulomb_n * (T::ONE - still) + self.static_n * still
     }
 
-    /// Damping force `sigma_1(v) z'`, N, with the bristle at `force_n`.
+    /// Damping force `sigma_1(v) z'` at the bristle force `force_n`, N.
     #[inline(always)]
     fn damping(&self, force_n: T, velocity_m_s: T, level: T) -> T {
         let share = velocity_m_s / self.damping_speed_m_s;
@@ -123,8 +123,8 @@ impl<T: Real> Law<T> for LuGre<T> {
         }
     }
 
-    /// The level is a nonlinear function of the speed, which a linear change per step must
-    /// approximate.
+    /// Longest step with which the friction level, a nonlinear function of the speed, is accurate
+    /// if it is linear in each step, s.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
         0.002
     }

@@ -1,34 +1,36 @@
-//! Maxwell slip law: parallel springs, each of which slips at its own share of the level.
+//! Maxwell slip law: parallel springs, each of which slips at its own fraction of the friction
+//! level.
 //!
 //! ```text
 //! F = sum F_j + F_v v,   dF_j/dx = k_j  while |F_j| < a_j F_c,   F_j = a_j F_c sgn(v)  beyond
 //! ```
 //!
 //! Source: Iwan (1966) for the elements; Lampaert, Swevers & Al-Bender (2003) and Al-Bender,
-//! Lampaert & Swevers (2005). In their generalised form (GMS) the level falls with the speed: here
-//! that is the contact effect `stribeck_excess`. A level that grows with the load is
-//! `dry_load_dependence`. Both change F_c; the elements keep their stiffness and their shares of
-//! F_c.
+//! Lampaert & Swevers (2005). In their generalised form (GMS), the friction level falls with the
+//! speed; here, the effect `stribeck_excess` describes this fall, and `dry_load_dependence` a level
+//! that grows with the load. Both change F_c; the elements keep their stiffness and their fractions
+//! of F_c.
 //!
 //! Each element stores its last reversal, so the force obeys Masing's rules (1926). A branch after
-//! a reversal is the virgin curve, twice as large. An inner loop closes, and after it the force
-//! continues as if the loop had not occurred. Dahl's law and LuGre, with one state, drift there.
+//! a reversal is the virgin curve enlarged by a factor of two. An inner loop closes, and the force
+//! then continues as if the loop had not occurred. The laws of Dahl and LuGre have one state only,
+//! and drift in an inner loop.
 //!
-//! Free stiffnesses and shares are more parameters than a record determines, and permutations of
-//! them are equivalent. Two properties of a contact are known: the stiffness at a reversal,
-//! `sigma_0`, and the shape of its virgin curve. The elements therefore follow the virgin curve of
-//! Dahl's law, with Dahl's parameters,
+//! A record does not determine all stiffnesses and fractions, and permutations of them are
+//! equivalent. A record does determine the stiffness at a reversal, `sigma_0`, and the shape of the
+//! virgin curve. The elements therefore approximate the virgin curve of Dahl's law, with its
+//! parameters,
 //!
 //! ```text
 //! F(x) = F_c [1 - (1 - (1 - i) sigma_0 x/F_c)^(1/(1 - i))]
 //! ```
 //!
-//! The exponent i spans the known contacts. Towards 0 all elements slip at once (elastic, then
-//! plastic); 1/3 is a sphere on a plane (Cattaneo 1938; Mindlin 1949). At 1/2 the slip
-//! displacements are spread evenly (Iwan); 1 is an exponential.
+//! The exponent i covers the known contacts. As i approaches 0, all elements slip at once (elastic,
+//! then plastic). The value 1/3 is that of a sphere on a plane (Cattaneo 1938; Mindlin 1949). For
+//! 1/2, the slip displacements are distributed uniformly (Iwan); for 1, the curve is exponential.
 //!
-//! While x grows, the share u of the stiffness that still sticks falls. The springs from the last
-//! to slip up to that share carry `g(u) = (u - i u^(1/i))/(1 - i)` of F_c. An element is the
+//! While x grows, the fraction u of the stiffness that still sticks falls. The springs that make up
+//! the fraction u and slip last carry `g(u) = (u - i u^(1/i))/(1 - i)` of F_c. An element is the
 //! interval between two values of u.
 //!
 //! The law is rate-independent: a sticking element is a spring and a sliding one is at its level. A
@@ -44,23 +46,24 @@ use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
-/// Number of elements.
+/// Number of elements (parallel springs).
 ///
-/// Their error relative to the virgin curve is 0.8 % of F_c at i = 0.1, 0.2 % at 1/2, 0.6 % at 1.
+/// With 16 elements, the error relative to the virgin curve is 0.8 % of F_c at i = 0.1, 0.2 % at
+/// 1/2, and 0.6 % at 1.
 pub const ELEMENTS: usize = 16;
 
-/// Parallel springs that slip one after the other.
+/// Law with parallel springs that slip one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct MaxwellSlip<T> {
     coulomb_n: T,
     viscous_n_s_m: T,
     /// Stiffness of each element, N/m.
     stiffness_n_m: [T; ELEMENTS],
-    /// Share of the level that each element carries.
+    /// Fraction of the friction level that each element carries.
     share: [T; ELEMENTS],
 }
 
-/// Cumulative share of the stiffness at each border between two elements.
+/// Cumulative fractions of the stiffness at the borders between the elements.
 ///
 /// The borders are close together where the last elements of a brittle curve slip.
 fn borders() -> [f64; ELEMENTS + 1] {
@@ -70,7 +73,8 @@ fn borders() -> [f64; ELEMENTS + 1] {
     })
 }
 
-/// Function `g(u) = (u - i u^(1/i))/(1 - i)`, continuous through i = 1.
+/// Function `g(u) = (u - i u^(1/i))/(1 - i)`, the fraction of F_c that the last springs to slip
+/// carry, continuous at i = 1.
 fn carried<T: Real>(u: f64, exponent: T) -> T {
     if u <= 0.0 {
         return T::ZERO;
@@ -88,7 +92,7 @@ fn carried<T: Real>(u: f64, exponent: T) -> T {
 }
 
 impl<T: Real> MaxwellSlip<T> {
-    /// Advances all elements along one leg.
+    /// Advances the forces of all elements along one leg, a part of a step in one direction.
     #[inline(always)]
     fn slide(&self, forces_n: &mut [T; ELEMENTS], leg: &Leg<T>) {
         let way = leg.direction * leg.distance_m;
@@ -106,7 +110,7 @@ impl<T: Real> MaxwellSlip<T> {
         }
     }
 
-    /// Forces of all elements at their levels, in the direction of motion.
+    /// Forces of all elements in sliding, in the direction of motion, N.
     fn sliding(&self, level: T, direction: T) -> [T; ELEMENTS] {
         self.share.map(|share| share * level * direction)
     }

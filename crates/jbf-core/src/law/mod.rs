@@ -1,10 +1,10 @@
 //! Friction laws, one per file.
 //!
-//! A law turns motion into a friction coefficient; the contributions of a rig belong to
+//! A law computes a friction coefficient from the motion. Contributions of the rig are effects, see
 //! [`crate::effect`].
 //!
-//! Laws in newtons (all except those of a bearing) use a load of 1 N, so that their coefficient is
-//! a force.
+//! Laws in newtons (all except those of a bearing) use a load of 1 N, so that the coefficient
+//! equals the force.
 //!
 //! To add a law, write its file with [`Law`], [`Named`] and [`SteadyCurve`], declare the module
 //! below, and add the law to `laws!`.
@@ -38,67 +38,68 @@ use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::real::Real;
 
-/// A friction law, which holds the configuration; variables are in `State`.
+/// Friction law with its parameters; the variables are in `State`.
 pub trait Law<T: Real> {
-    /// State of the law.
+    /// State of the law in the course of a run.
     type State: Copy + Send + 'static;
 
-    /// False if friction at a sample depends only on the last step before it, for any length of
-    /// that step.
+    /// True if friction depends on motion before the last step; false if any single step determines
+    /// it.
     const HAS_MEMORY: bool = core::mem::size_of::<Self::State>() > 0;
 
-    /// True if the law deflects before it slides: [`Law::bend`] then replaces the sign of the
-    /// motion.
+    /// True if the law deflects before it slides; [`Law::bend`] then replaces the jump at a
+    /// reversal.
     const HAS_BRISTLE: bool = false;
 
-    /// True if a contact that deflects before it slides carries all of the friction.
+    /// True if all of the friction deflects with a contact that deflects before it slides.
     ///
-    /// False if the viscous part acts in parallel with it, as it does with a law's own bristle.
+    /// False if viscous friction acts in parallel, as it does in a law that
+    /// [deflects](Self::HAS_BRISTLE).
     const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
 
-    /// Number of steps between samples that is sufficient for any sampling interval.
+    /// Number of steps between two samples that is sufficient for any sampling interval.
     ///
-    /// A law whose stepper is stable at any step follows a straight line between samples, and a
-    /// record contains no more than that line. Infinite if a step that is too long diverges.
+    /// The number is finite for a law that is stable with any step, because the motion between two
+    /// samples is taken as linear. It is infinite if the solution diverges with a step that is too
+    /// long.
     const ENOUGH_STEPS: f64 = f64::INFINITY;
 
     /// Indices, in the description of the law, of the two parameters that determine the path of its
     /// film.
     ///
-    /// It is set only if friction depends on the film through [`Law::film`] alone; see
+    /// The indices are given only if friction depends on the film through [`Law::film`] alone; see
     /// [`crate::film_path`].
     const FILM_PARAMETERS: Option<[usize; 2]> = None;
 
-    /// State of the film that enters friction.
+    /// Returns the state of the film that determines friction.
     #[inline(always)]
     fn film(&self, state: &Self::State) -> T {
         let _ = state;
         T::ZERO
     }
 
-    /// Sets the film to a value of [`Law::film`].
+    /// Sets the state of the film from a value of [`Law::film`].
     #[inline(always)]
     fn put_film(&self, state: &mut Self::State, film: T) {
         let _ = (state, film);
     }
 
-    /// Returns the state at the start of a run.
+    /// Returns the state at the start of a run under a load (N).
     fn start(&self, load_n: T) -> Self::State;
 
-    /// Load (N) that the law uses and that its coefficient refers to; a law may have a lightest
-    /// load.
+    /// Returns the load to which the coefficient refers, N; a law may have a lightest load.
     fn pressed_n(&self, load_n: T) -> T {
         load_n.max(T::ZERO)
     }
 
-    /// Load relative to the load that the law was built with; one for a law that does not depend on
-    /// it.
+    /// Returns the load relative to that given to the constructor; one for a law that does not
+    /// depend on the load.
     fn load_share(&self, load_n: T) -> T {
         let _ = load_n;
         T::ONE
     }
 
-    /// Returns the law with scaled parameters; `None` if it has no such parameters.
+    /// Returns the law with scaled parameters; `None` if the law has no such parameters.
     fn scaled(&self, scales: &Scales<T>) -> Option<Self>
     where
         Self: Sized,
@@ -107,27 +108,27 @@ pub trait Law<T: Real> {
         None
     }
 
-    /// Sets a new load; inexpensive when it did not change.
+    /// Sets a new load (N); inexpensive if the load did not change.
     fn set_load(&self, state: &mut Self::State, load_n: T);
 
-    /// Friction coefficient at the film speed `velocity_m_s` (signed).
+    /// Returns the friction coefficient at the speed of the film `velocity_m_s` (signed).
     fn friction(&self, state: &Self::State, velocity_m_s: T) -> Friction<T>;
 
-    /// Longest step, s, of the law's own stepper without loss of accuracy, up to a speed.
+    /// Returns the longest step with which the law is accurate at speeds up to `top_speed_m_s`, s.
     fn longest_step_s(&self, top_speed_m_s: f64) -> f64;
 
-    /// Advances by `dt_s`.
+    /// Advances the state by `dt_s`.
     ///
-    /// `speed_m_s` is |U| at the start, middle and end of the step, and `rate` a factor on the
-    /// law's own clock.
+    /// `speed_m_s` contains |U| at the start, middle and end of the step, and `rate` is a factor on
+    /// the rate of the dynamics.
     fn advance(&self, state: &mut Self::State, speed_m_s: [T; 3], rate: T, dt_s: T);
 
-    /// Deflects the bristle along the motion of a step and returns its signed coefficient, without
-    /// the viscous part.
+    /// Advances the deflection by a step and returns the signed friction coefficient, without
+    /// viscous friction.
     ///
-    /// It is called for laws with [`Law::HAS_BRISTLE`]. `level` is [`Friction::jump`] at both ends
-    /// of the step, including contact effects. A step of zero length is the start of a run: the
-    /// bristle is then fully deflected if the run starts in motion.
+    /// The method is called for laws with [`Law::HAS_BRISTLE`]. `level` is [`Friction::jump`] at
+    /// both ends of the step, including contact effects. A step of zero length is the start of a
+    /// run: the bristle is then fully deflected if the run starts in motion.
     #[inline]
     fn bend(
         &self,
@@ -155,10 +156,11 @@ registry::laws! {
     rate_and_state::RateAndState,
 }
 
-/// True if the catalogue has a law of this name and the values fit its parameters.
+/// Returns true if the catalogue has a law with this name and the values are valid for its
+/// parameters.
 ///
-/// The number of values must be that of the parameters, and each value must be within its bounds.
-/// The function can check a constant at compile time, such as those that `jbf export` writes.
+/// There must be one value per parameter, each within the bounds. The function can check constants
+/// at compile time, for example those that `jbf export` writes.
 ///
 /// ```
 /// const _: () = assert!(jbf_core::law::fits("journal", &[0.26, 0.06, 7.5e5, 33.0]));

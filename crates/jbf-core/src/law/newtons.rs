@@ -1,15 +1,13 @@
-//! Common parts of the laws in newtons.
+//! Common parts of the laws in newtons: descriptions of parameters, and the check of a speed.
 //!
-//! They are the descriptions of their parameters, whose bounds span every machine from a watch to a
-//! press, and the check of a speed.
-//!
-//! The start values are those of a machine with about 10 N of friction; a fit takes its own from
+//! The bounds of the parameters include machines of every size, from a watch to a press. The start
+//! values are those of a machine with about 10 N of friction; a fit estimates its start values from
 //! the data.
 
 use crate::error::{check, ParameterError};
 use crate::page::{Parameter, Start};
 
-/// Description of a force that is never zero, N.
+/// Describes a positive force, N.
 pub(super) const fn force(
     name: &'static str,
     meaning: &'static str,
@@ -18,7 +16,7 @@ pub(super) const fn force(
     Parameter::new(name, "N", meaning, [1e-6, 1e7], starts).log()
 }
 
-/// Description of a speed that is a scale, m/s.
+/// Describes a characteristic speed, whose logarithm is fitted, m/s.
 pub(super) const fn speed(
     name: &'static str,
     meaning: &'static str,
@@ -27,7 +25,7 @@ pub(super) const fn speed(
     Parameter::new(name, "m/s", meaning, [1e-7, 1e3], starts).log()
 }
 
-/// Description of a stiffness of the contact, N/m.
+/// Describes a stiffness of the contact, N/m.
 pub(super) const fn stiffness(
     name: &'static str,
     meaning: &'static str,
@@ -38,7 +36,7 @@ pub(super) const fn stiffness(
         .start(Start::Stiffness)
 }
 
-/// Description of a damping that may be zero, N s/m.
+/// Describes a damping, which may be zero, N s/m.
 pub(super) const fn damping(
     name: &'static str,
     meaning: &'static str,
@@ -47,7 +45,7 @@ pub(super) const fn damping(
     Parameter::new(name, "N s/m", meaning, [0.0, 1e7], starts)
 }
 
-/// Description of a time that is a scale, from `lower` to `upper`, s.
+/// Describes a characteristic time, whose logarithm is fitted, s.
 pub(super) const fn time(
     name: &'static str,
     meaning: &'static str,
@@ -57,7 +55,7 @@ pub(super) const fn time(
     Parameter::new(name, "s", meaning, bounds, starts).log()
 }
 
-/// Description of a dimensionless number that is a scale.
+/// Describes a dimensionless number, whose logarithm is fitted.
 pub(super) const fn number(
     name: &'static str,
     meaning: &'static str,
@@ -67,15 +65,15 @@ pub(super) const fn number(
     Parameter::new(name, "-", meaning, bounds, starts).log()
 }
 
-/// Coulomb friction.
+/// Description of the Coulomb (kinetic) friction.
 pub(super) const F_C: Parameter =
     force("F_c", "Coulomb (kinetic) friction", &[10.0]).start(Start::Kinetic);
-/// Static friction.
+/// Description of the static friction.
 pub(super) const F_S: Parameter =
     force("F_s", "static (breakaway) friction", &[12.0]).start(Start::Breakaway);
-/// Viscous friction.
+/// Description of the viscous friction coefficient.
 pub(super) const F_V: Parameter = damping("F_v", "viscous friction", &[10.0]).start(Start::Viscous);
-/// Stribeck speed.
+/// Description of the Stribeck speed.
 pub(super) const V_S: Parameter = speed(
     "v_s",
     "Stribeck speed: scale of the decrease of friction",
@@ -83,7 +81,7 @@ pub(super) const V_S: Parameter = speed(
 )
 .start(Start::StribeckSpeed);
 
-/// Checks the speed of a steady curve: at rest friction is set-valued.
+/// Checks that a speed is finite and not zero; at rest the friction is set-valued.
 pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
     check(
         velocity_m_s.is_finite() && velocity_m_s != 0.0,
@@ -93,14 +91,14 @@ pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
     )
 }
 
-/// Methods of [`super::Law`] that are identical for all laws in newtons.
+/// Defines the constants and methods of [`super::Law`] that are identical for all laws in newtons.
 macro_rules! in_newtons {
     () => {
-        /// The viscous part belongs to another element (a seal, grease), as in Dahl's law and
-        /// LuGre's.
+        /// Viscous friction has another cause (a seal, grease) and does not deflect, as in the laws
+        /// of Dahl and LuGre.
         const BENDS_WHOLE: bool = false;
 
-        /// One newton: the coefficient of this law is a force.
+        /// Returns a load of one newton, because the coefficient of this law is a force.
         #[inline(always)]
         fn pressed_n(&self, _load_n: T) -> T {
             T::ONE

@@ -6,18 +6,18 @@
 //! theta' = 1 - |v| theta/D_c
 //! ```
 //!
-//! theta is the age of the contact, s. Well above the speed `2 v_0 exp(-psi/a)` the first line is
-//! `F_0 + a ln(|v|/v_0) + b ln(v_0 theta/D_c)`: friction rises by a per e-fold of the speed at
-//! once, and falls by b per e-fold as the age follows over the slip distance D_c. In steady sliding
-//! `theta = D_c/|v|`, so that `F = F_0 + (a - b) ln(|v|/v_0)`. Without a and b the law is
-//! Coulomb's.
+//! The variable theta is the age of the contact, s. Well above the speed `2 v_0 exp(-psi/a)` the
+//! first line is `F_0 + a ln(|v|/v_0) + b ln(v_0 theta/D_c)`. If the speed increases by a factor of
+//! e, friction rises by a at once, and falls by b while the age adapts over the slip distance D_c.
+//! In steady sliding `theta = D_c/|v|`, so that `F = F_0 + (a - b) ln(|v|/v_0)`. For a = b = 0 the
+//! law is that of Coulomb.
 //!
 //! Source: Dieterich (1979); Ruina (1983); Rice & Ben-Zion (1996) for the inverse hyperbolic sine,
 //! which replaces the logarithm that diverges at rest.
 //!
-//! The speed below which the regularised force vanishes is far below any record (exp(-F_0/a)). At
-//! a speed of exactly zero the contact therefore holds, in the set-valued sense of
-//! [`Friction::jump`], up to the force at which it slides steadily at its age, at the speed
+//! The speed below which the regularised force vanishes, proportional to exp(-F_0/a), is far below
+//! any recorded speed. At a speed of exactly zero, friction is therefore set-valued
+//! ([`Friction::jump`]), up to the force of steady sliding at the present age, at the speed
 //! D_c/theta.
 //!
 //! The age is exact in a step of constant speed, and stable and positive in any step. Where the
@@ -42,14 +42,16 @@ use crate::friction::Friction;
 use crate::page::{Parameter, Start};
 use crate::real::Real;
 
-/// Smallest and largest age of a contact, s, which prevent an overflow in single precision.
+/// Smallest and largest age of a contact, s; the limits prevent an overflow in single precision.
 const AGES_S: [f64; 2] = [1e-30, 1e30];
-/// Longest distance of a step, in slip distances; beyond it the age has followed the speed.
+/// Longest sliding distance of a step in units of D_c; after a longer distance, the age is that of
+/// steady sliding.
 const LONGEST: f64 = 1e9;
-/// Ratio of force to direct effect above which the inverse hyperbolic sine is a logarithm.
+/// Ratio of the force to the direct effect `a` above which the inverse hyperbolic sine equals a
+/// logarithm.
 const FAR_ABOVE_CREEP: f64 = 40.0;
 
-/// Contact whose friction depends on its age.
+/// Rate-and-state law: friction depends on the speed and on the age of the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct RateAndState<T> {
     reference_n: T,
@@ -63,7 +65,7 @@ pub struct RateAndState<T> {
 }
 
 impl<T: Real> RateAndState<T> {
-    /// Age of a contact that slides steadily, s; at rest that of the reference speed.
+    /// Age of the contact in steady sliding, s; at rest, that of the reference speed.
     #[inline(always)]
     fn steady_age_s(&self, speed_m_s: T) -> T {
         let speed_m_s = if speed_m_s > T::ZERO {
@@ -74,7 +76,7 @@ impl<T: Real> RateAndState<T> {
         limited(self.slip_m / speed_m_s)
     }
 
-    /// Age after a step in which the speed changes linearly.
+    /// Age after a step in which the speed changes linearly, s.
     #[inline(always)]
     fn older_s(&self, age_s: T, speed_m_s: [T; 2], dt_s: T) -> T {
         let [p, q] = speed_m_s.map(|v| (v * dt_s / self.slip_m).min(T::of(LONGEST)));
@@ -94,7 +96,7 @@ impl<T: Real> RateAndState<T> {
         limited(age_s * (-(p + q) * T::of(0.5)).exp() + dt_s * share)
     }
 
-    /// Friction without the viscous part, unsigned.
+    /// Unsigned friction without the viscous part, N.
     #[inline(always)]
     fn level_n(&self, age_s: T, velocity_m_s: T) -> T {
         let log_age = age_s.ln();
@@ -116,7 +118,7 @@ impl<T: Real> RateAndState<T> {
     }
 }
 
-/// An age within the limits.
+/// Returns the age limited to [`AGES_S`], s.
 #[inline(always)]
 fn limited<T: Real>(age_s: T) -> T {
     age_s.max(T::of(AGES_S[0])).min(T::of(AGES_S[1]))
@@ -194,7 +196,7 @@ impl<T: Real> Named<T> for RateAndState<T> {
 }
 
 impl<T: Real> Law<T> for RateAndState<T> {
-    /// Age of the contact, s; zero before the first step, when it is that of steady sliding.
+    /// Age of the contact, s. Before the first step, zero represents the age of steady sliding.
     type State = T;
 
     in_newtons!();
@@ -216,7 +218,8 @@ impl<T: Real> Law<T> for RateAndState<T> {
         }
     }
 
-    /// A step follows a speed that changes linearly, as it does between two samples.
+    /// Longest step, s: infinite, because a step is accurate for a speed that changes linearly, as
+    /// between two samples.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
         f64::INFINITY
     }

@@ -1,16 +1,17 @@
-//! Macro that generates, from the list in `law/mod.rs`, the catalogue of laws and the dispatch by
-//! name.
+//! Macro that generates the catalogue of laws, and the selection of a law by name.
+//!
+//! The list in `law/mod.rs` is its input.
 
 macro_rules! laws {
     ($($module:ident::$Type:ident),* $(,)?) => {
-        /// All laws, the default first.
+        /// Descriptions of all laws; the first is the default law.
         pub const CATALOGUE: &[Info] = &[$(<$module::$Type<f64> as Named<f64>>::INFO,)*];
 
-        /// Builds the law of that name and passes it to `visitor`, compiled for the type of each
-        /// law.
+        /// Creates the law `name` and passes it to `visitor`, which is compiled for the type of
+        /// each law.
         ///
         /// # Errors
-        /// Those of [`Named::build`]; an unknown name is reported as the parameter `law`.
+        /// As [`Named::build`]; an unknown name is reported as the parameter `law`.
         pub fn with_law<T: Real, V: Visitor<T>>(
             name: &str,
             bearing: Option<&Bearing>,
@@ -26,7 +27,7 @@ macro_rules! laws {
             Err(ParameterError::UnknownLaw)
         }
 
-        /// Rust type of the law of that name, as in `law::NAME::TYPE`.
+        /// Returns the Rust type of the law `name`: `TYPE` in `law::NAME::TYPE`.
         pub fn type_name(name: &str) -> Option<&'static str> {
             $(if name == <$module::$Type<f64> as Named<f64>>::INFO.name {
                 return Some(stringify!($Type));
@@ -34,11 +35,10 @@ macro_rules! laws {
             None
         }
 
-        /// Computes steady friction (N) of the law of that name at speeds (m/s, not zero), into
-        /// `out`.
+        /// Computes the steady friction (N) of the law `name` at speeds (m/s, not zero) into `out`.
         ///
         /// # Errors
-        /// Those of [`Named::build`] and of [`SteadyCurve::steady_n`].
+        /// As [`Named::build`] and [`SteadyCurve::steady_n`].
         pub fn steady_n(
             name: &str,
             bearing: Option<&Bearing>,

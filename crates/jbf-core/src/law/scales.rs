@@ -1,6 +1,7 @@
-//! Parameters of a law under a load, relative to those under the load that it was built with.
+//! Factors on the parameters of a law that depend on the load.
 
-/// Factors on the parameters of a law; see [`super::Law::scaled`].
+/// Factors on the parameters of a law for a load, relative to the load given to its constructor;
+/// see [`super::Law::scaled`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales<T> {
     /// Factor on the transition speed U_tr.

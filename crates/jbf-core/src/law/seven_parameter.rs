@@ -7,9 +7,9 @@
 //! F_s(t_2) = F_s,a + (F_s,inf - F_s,a) t_2 / (t_2 + gamma)
 //! ```
 //!
-//! t_2 is the time stuck, F_s,a the Stribeck part of friction at the end of the last sliding.
-//! Without a delay that part is fully restored at every stop. Rising static friction is therefore
-//! visible only with tau_L above zero, a property of the model.
+//! The variable t_2 is the time since the contact stuck, and F_s,a the Stribeck part of friction at
+//! the end of the last sliding. With tau_L = 0, this part is fully restored at every stop, so
+//! static friction rises with time only if tau_L is positive.
 //!
 //! Source: Armstrong-Helouvry & Dupont (1993); Armstrong-Helouvry, Dupont & Canudas de Wit (1994);
 //! Cohn (1998), section 2.3.1.
@@ -29,7 +29,8 @@ use crate::page::{Parameter, Start};
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
-/// The seven-parameter model.
+/// Seven-parameter model with presliding, Stribeck curve, frictional memory and rising static
+/// friction.
 #[derive(Clone, Copy, Debug)]
 pub struct SevenParameter<T> {
     stiffness_n_m: T,
@@ -41,33 +42,33 @@ pub struct SevenParameter<T> {
     dwell_s: T,
 }
 
-/// State of the model.
+/// State of the contact in the seven-parameter model.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// Direction: -1 or +1 in sliding, zero while stuck.
+    /// Direction of sliding, -1 or +1; zero while the contact sticks.
     way: T,
     /// Force without the viscous part, N.
     force_n: T,
     /// Stribeck part at the end of the last sliding, N.
     arrival_n: T,
-    /// Present Stribeck part of the contact, N.
+    /// Present Stribeck part of friction, N.
     grown_n: T,
-    /// Time stuck, s.
+    /// Time since the contact stuck, s.
     stuck_s: T,
-    /// Speed |v| one delay ago, m/s.
+    /// Speed |v| at the time of the delay `tau_L` ago, m/s.
     late_m_s: T,
     line: DelayLine<T>,
 }
 
 impl<T: Real> SevenParameter<T> {
-    /// Share of the Stribeck part at a (delayed) speed.
+    /// Fraction of the Stribeck part that remains at a (delayed) speed.
     #[inline(always)]
     fn share(&self, speed_m_s: T) -> T {
         let x = speed_m_s / self.stribeck_m_s;
         T::ONE / (T::ONE + x * x)
     }
 
-    /// Stops the contact.
+    /// Changes the state from sliding to sticking.
     #[inline(always)]
     fn stop(&self, state: &mut State<T>) {
         if state.way != T::ZERO {
@@ -77,7 +78,8 @@ impl<T: Real> SevenParameter<T> {
         }
     }
 
-    /// Advances along one leg: the spring deflects, breaks away, or slides on.
+    /// Advances the state along one leg (a part of a step in one direction): the spring deflects,
+    /// breaks away, or the contact slides.
     #[inline(always)]
     fn slide(&self, state: &mut State<T>, leg: &Leg<T>) {
         let (way, level) = (leg.direction, leg.level[1]);
@@ -191,7 +193,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
         }
     }
 
-    /// Breakaway is resolved to one step.
+    /// Longest step, s; breakaway is resolved to one step.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
         0.002
     }
@@ -236,7 +238,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
 }
 
 impl SteadyCurve for SevenParameter<f64> {
-    /// Steady sliding after a breakaway from a long rest.
+    /// Returns the friction of steady sliding after a breakaway from a long rest, N.
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         moving(velocity_m_s)?;
         let level = self.coulomb_n + self.static_n * self.share(velocity_m_s);

@@ -1,4 +1,4 @@
-//! Steady state of the film, equations (3.5) and (3.6): the Stribeck curve.
+//! Steady state of the film, equations (3.5) and (3.6) of Cohn (1998): the Stribeck curve.
 
 use crate::film::FilmIntegrals;
 
@@ -13,11 +13,11 @@ pub struct Steady {
     pub coefficient: f64,
 }
 
-/// Solves for the eccentricity and attitude that balance the load number `fb` at `ub = |U|/U_tr`:
-/// `(W - J12 eps Ub/2)^2 + (J11 eps Ub/2)^2 = Fb^2`.
+/// Solves for the eccentricity ratio and the attitude angle (rad) that balance the load number `fb`
+/// at `ub = |U|/U_tr`: `(W - J12 eps Ub/2)^2 + (J11 eps Ub/2)^2 = Fb^2`.
 ///
 /// The left side grows with eps from 0 to infinity, so bisection always converges. The unknown is
-/// `log(1 - eps)`, which resolves light and near-contact films alike.
+/// `log(1 - eps)`, which is accurate both for light loads and near contact.
 pub(crate) fn solve(fb: f64, ub: f64, asperity_load: impl Fn(f64) -> f64) -> (f64, f64) {
     let parts = |eps: f64| {
         let j = FilmIntegrals::at(eps);

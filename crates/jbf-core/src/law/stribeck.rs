@@ -1,6 +1,6 @@
 //! Stribeck law `F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)`.
 //!
-//! Friction falls from its static level as the speed rises, then grows with it.
+//! With rising speed, friction falls from its static level, and then grows.
 //!
 //! Source: Tustin (1947), delta = 1; Bo & Pavelescu (1982), delta 0.5 to 1; Armstrong-Helouvry
 //! (1991), delta = 2; Cohn (1998), section 2.2.
@@ -13,7 +13,7 @@ use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::real::Real;
 
-/// Stribeck curve without memory.
+/// Law with a Stribeck curve and without memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Stribeck<T> {
     coulomb_n: T,

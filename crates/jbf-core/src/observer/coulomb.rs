@@ -1,4 +1,4 @@
-//! Coulomb friction observer with an exponent, (6.1):
+//! Coulomb friction observer with an exponent, equation (6.1) of Cohn (1998):
 //!
 //! ```text
 //! F_hat = a_hat sgn(v),  a_hat = z - k_F phi(|v|),  phi(w) = w^p
@@ -6,28 +6,28 @@
 //! ```
 //!
 //! Source: Friedland & Park (1992); Friedland & Mentzelopoulou (1992) for the exponent; Cohn
-//! (1998), (6.1). The thesis writes (u - F_hat) in units of acceleration.
+//! (1998), (6.1), who writes (u - F_hat) in units of acceleration.
 //!
 //! For p < 1 the gain `k_F p w^(p-1)` has a pole at v = 0; for p > 1 it grows without bound with
-//! speed. Where the gain would exceed half of the stable value of one step (`k_F phi' b dt = 1/2`),
-//! phi continues as its own tangent. The gain is then bounded, and phi and phi' remain consistent,
-//! so that no error accumulates on the passage through zero. With p = 1 this has no effect. At v =
-//! 0 exactly the sign is zero and the observer holds.
+//! speed. At speeds where the gain would exceed half of the stable value of one step (`k_F phi' b
+//! dt = 1/2`), phi is replaced by its tangent. The gain is then bounded, and phi and phi' remain
+//! consistent, so that no error accumulates at a reversal. For p = 1 phi does not change. At v = 0
+//! exactly, the sign is zero and the estimate is constant.
 
 use crate::error::{check, positive, Error};
 use crate::real::Real;
 
-/// Highest speed of any shaft, rad/s. A tangent that extended that far would replace phi at all
+/// Highest speed of any shaft, rad/s; a tangent that extends to this speed would replace phi at all
 /// speeds.
 const FASTEST_RAD_S: f64 = 1e4;
 
-/// Gains of the Coulomb observer.
+/// Coulomb friction observer with its gains.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombObserver<T> {
     gain: T,
     exponent: T,
     linear: bool,
-    /// Speed at which phi becomes its tangent: below it for p < 1, above it for p > 1.
+    /// Speed at which phi becomes its tangent, rad/s: below it for p < 1, above it for p > 1.
     edge: T,
     edge_slope: T,
     edge_power: T,
@@ -35,14 +35,14 @@ pub struct CoulombObserver<T> {
     dt_s: T,
 }
 
-/// State `z` of the observer, in volts.
+/// State `z` of the observer, V.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State<T> {
     z_v: T,
 }
 
-/// Value of phi and its slope at one speed.
+/// Value of the function phi and its slope at one speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Power<T> {
     value: T,
@@ -50,16 +50,17 @@ pub struct Power<T> {
 }
 
 impl<T: Real> CoulombObserver<T> {
-    /// Creates an observer.
+    /// Creates a Coulomb friction observer.
     ///
-    /// - `gain`: `k_F`, in the thesis's units, V per (rad/s)^p.
+    /// - `gain`: `k_F`, in the units of Cohn (1998), V per (rad/s)^p.
     /// - `exponent`: `p`.
-    /// - `input_rad_s2_v`: the plant's input gain `b`, rad/s^2/V.
-    /// - `limit_v`: largest level that may be learned, V.
+    /// - `input_rad_s2_v`: input gain `b` of the plant, rad/s^2/V.
+    /// - `limit_v`: largest friction level that may be learned, V.
+    /// - `dt_s`: time step of the control loop, s.
     ///
     /// # Errors
-    /// All must be positive and finite, and `p` at most 4. With p = 1 `k_F b dt` must be below 1;
-    /// with p < 1 the gain must be stable at some speed of a shaft.
+    /// All must be positive and finite, and `p` at most 4. With p = 1, `k_F b dt` must be below 1.
+    /// With p < 1, the gain must be stable at a speed that a shaft can reach.
     pub fn new(
         gain: f64,
         exponent: f64,
@@ -104,7 +105,7 @@ impl<T: Real> CoulombObserver<T> {
         })
     }
 
-    /// Evaluates phi at a speed, rad/s.
+    /// Evaluates phi and its slope at a speed, rad/s.
     #[inline]
     #[must_use]
     pub fn power(&self, velocity_rad_s: T) -> Power<T> {
@@ -134,14 +135,14 @@ impl<T: Real> CoulombObserver<T> {
         }
     }
 
-    /// Friction level `a_hat`, V.
+    /// Returns the estimated friction level `a_hat`, V.
     #[inline]
     #[must_use]
     pub fn level_v(&self, state: &State<T>, power: &Power<T>) -> T {
         state.z_v - self.gain * power.value
     }
 
-    /// Learns from one step.
+    /// Updates the estimate of the friction level in one step.
     ///
     /// `free_rad_s2` is the acceleration (rad/s^2) of the plant without the compensated friction,
     /// `-a v + b u` with u before compensation. The estimate then follows the friction at the rate
@@ -156,7 +157,7 @@ impl<T: Real> CoulombObserver<T> {
             .min(least + self.limit_v);
     }
 
-    /// State at rest that has learned a level, V, limited to the bound.
+    /// Creates the state at rest for a friction level (V), limited to the bound.
     #[must_use]
     pub fn learned(&self, level_v: T) -> State<T> {
         let rest = self.power(T::ZERO);

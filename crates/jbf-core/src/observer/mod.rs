@@ -1,4 +1,4 @@
-//! Observers, one per file, of quantities that the encoder does not measure.
+//! Observers of quantities that the encoder does not measure, one per file.
 
 pub mod coulomb;
 pub mod velocity;

@@ -1,4 +1,5 @@
-//! Speed estimate from an encoder, (6.2), plain or with feedforward of the plant's input:
+//! Velocity observer, equation (6.2) of Cohn (1998), without or with feedforward of the input of
+//! the plant:
 //!
 //! ```text
 //! v_hat = z + k x,   z' = -k v_hat                    (plain)
@@ -7,16 +8,16 @@
 //!
 //! Source: Tafazoli, de Silva & Lawrence (1995); Cohn (1998), (6.2), Appendices D and E.
 //!
-//! The step stores v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. Term for term this is
-//! the thesis's Euler step, and neither the angle nor its rounding error grows over hours.
+//! The state is v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. This is equivalent to the
+//! Euler step in Cohn (1998), and neither the angle nor its rounding error grows over hours.
 
 use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
 
-/// Gain `k` of the thesis, 1/s.
+/// Gain `k` of the velocity observer in Cohn (1998), 1/s.
 pub const THESIS_1_S: f64 = 15.0;
 
-/// Gains of the velocity observer, whose state is the speed, rad/s.
+/// Velocity observer with its gains; the state is the estimated speed, rad/s.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObserver<T> {
     gain_1_s: T,
@@ -25,7 +26,7 @@ pub struct VelocityObserver<T> {
 }
 
 impl<T: Real> VelocityObserver<T> {
-    /// Creates the plain observer with gain `k` (1/s).
+    /// Creates the observer without feedforward, with the gain `k` (1/s).
     ///
     /// # Errors
     /// The gain must be positive, and `k dt` below 1.
@@ -33,7 +34,7 @@ impl<T: Real> VelocityObserver<T> {
         Self::fed_forward(gain_1_s, 0.0, 0.0, dt_s)
     }
 
-    /// Creates the observer with feedforward of the input of the plant `v' = -a v + b u`.
+    /// Creates the observer with feedforward of the input of the plant, `v' = -a v + b u`.
     ///
     /// # Errors
     /// Gains must be positive (`a` and `b` may be zero), and `(a + k) dt` below 1.
@@ -65,19 +66,19 @@ impl<T: Real> VelocityObserver<T> {
         })
     }
 
-    /// Updates the estimate, rad/s, after the shaft has moved by `moved_rad`.
+    /// Returns the estimated speed, rad/s, corrected after the shaft has moved by `moved_rad`.
     ///
-    /// Call it before the control law.
+    /// It is called before the control law.
     #[inline]
     #[must_use]
     pub fn measure(&self, velocity_rad_s: T, moved_rad: T) -> T {
         velocity_rad_s + self.gain_1_s * moved_rad
     }
 
-    /// Predicts the estimate at the next sample under the input `u_v` (V; ignored by the plain
-    /// form).
+    /// Returns the speed predicted for the next sample, rad/s, under the input `u_v` (V; ignored
+    /// without feedforward).
     ///
-    /// Call it after the control law.
+    /// It is called after the control law.
     #[inline]
     #[must_use]
     pub fn carry(&self, velocity_rad_s: T, u_v: T) -> T {

@@ -1,6 +1,6 @@
-//! Explicit Euler method `y += dt f(y)`, of first order, as in the 2 ms loop of the thesis.
+//! Explicit Euler method `y += dt f(y)`, of first order, as in the 2 ms loop of Cohn (1998).
 //!
-//! (The thesis prints `eps_{i+1} = eps' dt`; the state itself is missing there.)
+//! (Cohn prints `eps_{i+1} = eps' dt`, in which the state itself is missing.)
 
 use super::{along, Stepper, System};
 use crate::real::Real;

@@ -1,6 +1,6 @@
-//! Fixed-step integrators, one per file.
+//! Integration methods with a fixed step, one per file.
 //!
-//! A stepper is independent of friction: it advances any [`System`] whose input is known at the
+//! A method is independent of friction: it advances any [`System`] whose input is known at the
 //! start, middle and end of the step.
 
 mod euler;
@@ -18,22 +18,23 @@ pub use stiff::{Linear, SecondOrder, ShiftedSolver, StiffStepper, StiffSystem, T
 
 use crate::real::Real;
 
-/// A system `state' = slope(state, input)`: `N` states driven by one input.
+/// System of differential equations `state' = slope(state, input)` with `N` states and one input.
 pub trait System<T: Real, const N: usize> {
-    /// Rate of change of the state.
+    /// Returns the time derivative of the state.
     fn slope(&self, state: &[T; N], input: T) -> [T; N];
 
-    /// Rate of change of the state at the start of a step, where a system may know more than
-    /// `state` contains.
+    /// Returns the time derivative of the state at the start of a step; a system may know more
+    /// about this state than `state` contains.
     #[inline(always)]
     fn slope_at_start(&self, state: &[T; N], input: T) -> [T; N] {
         self.slope(state, input)
     }
 }
 
-/// One fixed step of an explicit method.
+/// Explicit integration method with a fixed step.
 pub trait Stepper {
-    /// Advances `state` by `dt`; `input` holds the input at the start, middle and end.
+    /// Advances `state` by `dt`; `input` contains the input at the start, middle and end of the
+    /// step.
     fn step<T: Real, S: System<T, N>, const N: usize>(
         &self,
         system: &S,

@@ -3,7 +3,7 @@
 use super::{along, Stepper, System};
 use crate::real::Real;
 
-/// Classical fourth-order Runge-Kutta.
+/// Classical Runge-Kutta method of order four.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rk4;
 

@@ -1,20 +1,21 @@
 //! RODAS3, a Rosenbrock method of order three (Sandu, Verwer, Blom, Spee, Carmichael & Potra,
 //! Atmospheric Environment 31, 1997).
 //!
-//! It is L-stable and stiffly accurate. It has order three on differential-algebraic systems too,
-//! which the full bearing becomes as its mass number approaches zero.
+//! The method is L-stable and stiffly accurate. It also has order three for differential-algebraic
+//! systems, which the equations of the journal with inertia approach as the mass number approaches
+//! zero.
 //!
-//! It suits the loop because a Rosenbrock step has a fixed cost (no Newton iteration, which may
-//! need more). At 2 ms the film moves so little that order three leaves errors far below a
-//! sensor's. The error is 7e-6 of the loop's peak on the full model at 2 rad/s, for 140 ns per
-//! step. [`Rodas5P`](super::Rodas5P) takes 340 ns and is no better there, because the remaining
-//! error comes from the kink of |U| inside a step. It evaluates two slopes in addition to the
-//! linearisation; its coefficients are small fractions.
+//! The method suits a control loop because a Rosenbrock step has a fixed computing time, unlike a
+//! Newton iteration. In 2 ms the film moves so little that the error of a method of order three is
+//! far below that of a sensor: 7e-6 of the peak of the friction for the model with inertia at 2
+//! rad/s, with 140 ns per step. [`Rodas5P`](super::Rodas5P) takes 340 ns and is not more accurate
+//! there, because the remaining error is that of the kink of |U| inside a step. A step evaluates
+//! two slopes in addition to the linearisation.
 
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
 
-/// L-stable Rosenbrock method of order three.
+/// L-stable Rosenbrock method RODAS3 of order three.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rodas3;
 

@@ -1,10 +1,10 @@
 //! Rodas5P, a Rosenbrock method of order five (Steinebach, BIT Numerical Mathematics 63:27, 2023).
 //!
-//! It is L-stable and stiffly accurate, with an embedded method of order four, made for stiff and
-//! differential-algebraic systems.
+//! The method is L-stable and stiffly accurate, with an embedded method of order four, for stiff
+//! and differential-algebraic systems.
 //!
-//! It is written in the unknowns that need no product with the Jacobian (Hairer & Wanner, Solving
-//! Ordinary Differential Equations II, IV.7):
+//! The unknowns are those that need no product with the Jacobian (Hairer & Wanner, Solving Ordinary
+//! Differential Equations II, IV.7):
 //!
 //! ```text
 //! (1/(gamma h) - J) u_i = f(t + c_i h, y + sum_j a_ij u_j) + sum_j (C_ij / h) u_j + d_i h f_t
@@ -14,27 +14,27 @@ use super::rodas5p_tableau::{A, C, D, GAMMA, H, NODES};
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
 
-/// Input along a step, as required by the stages.
+/// Input of a system along a step, as required by the stages of the method.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Input<T> {
-    /// Value of the input at [`NODES`].
+    /// Value of the input at the fractions [`NODES`] of the step.
     pub at_nodes: [T; 4],
     /// Value of the input at the end of the step.
     pub at_end: T,
-    /// Rate of change of the input at the start of the step, times the length of the step.
+    /// Time derivative of the input at the start of the step, multiplied by the length of the step.
     pub change: T,
 }
 
-/// Result of one step.
+/// Result of one step: the unknowns of all stages and the state at the end.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize> {
     pub(crate) unknowns: [[T; N]; 8],
-    /// State at the end.
+    /// State at the end of the step.
     pub end: [T; N],
 }
 
 impl<const N: usize> Stages<f64, N> {
-    /// Placeholder without values.
+    /// Placeholder with zeros.
     pub(crate) const NONE: Self = Self {
         unknowns: [[0.0; N]; 8],
         end: [0.0; N],
@@ -42,18 +42,18 @@ impl<const N: usize> Stages<f64, N> {
 }
 
 impl<T: Real, const N: usize> Stages<T, N> {
-    /// Error estimate of the state at the end.
+    /// Returns the estimated error of the state at the end of the step.
     #[inline]
     pub fn error(&self) -> &[T; N] {
         &self.unknowns[7]
     }
 
-    /// Component `n` along the step, of order four.
+    /// Returns the polynomial of order four for state `n` along the step.
     ///
-    /// The coefficients are those of 1, s, .., s^4, where s goes from zero to one. (Hermite's
-    /// polynomial from slopes and curvatures is finer where the film is not stiff. It is much
-    /// coarser where the film is stiff, because there slopes and curvatures amplify the error of
-    /// the state.)
+    /// The coefficients are those of 1, s, .., s^4, where s goes from zero to one. (The Hermite
+    /// polynomial from first and second derivatives is more accurate if the film is not stiff. It
+    /// is much less accurate for a stiff film, because the derivatives amplify the error of the
+    /// state.)
     #[inline]
     pub fn quartic(&self, start: &[T; N], n: usize) -> [T; 5] {
         let row = |r: usize| {
@@ -68,8 +68,8 @@ impl<T: Real, const N: usize> Stages<T, N> {
     }
 }
 
-/// Computes `sum_j row_j u_j` of the first `K` unknowns; `K` is a constant so that the sum has no
-/// loop.
+/// Computes component `i` of `sum_j row_j u_j` over the first `K` unknowns; `K` is a constant so
+/// that the sum has no loop.
 #[inline(always)]
 fn combined<T: Real, const N: usize, const K: usize>(
     row: &[f64],
@@ -83,7 +83,7 @@ fn combined<T: Real, const N: usize, const K: usize>(
     sum
 }
 
-/// Computes one step of a system already linearised at `state`.
+/// Computes one step of a system that is already linearised at `state`.
 #[inline(always)]
 pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     system: &S,
@@ -150,7 +150,7 @@ pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     }
 }
 
-/// L-stable Rosenbrock method of order five.
+/// L-stable Rosenbrock method Rodas5P of order five.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rodas5P;
 

@@ -1,7 +1,7 @@
 //! Coefficients of Rodas5P (Steinebach, BIT Numerical Mathematics 63:27, 2023), in the unknowns
 //! of `rodas5p.rs`.
 
-/// Diagonal of the method.
+/// Diagonal coefficient `gamma` of the method.
 pub(crate) const GAMMA: f64 = 0.21193756319429014;
 
 /// Coefficients `a_ij` of stages two to six; stages seven and eight and the end each add the
@@ -91,7 +91,8 @@ pub(crate) const C: [[f64; 7]; 7] = [
     ],
 ];
 
-/// Points at which stages two to five evaluate the input; the others evaluate it at the end.
+/// Fractions of the step at which stages two to five evaluate the input; the others evaluate it at
+/// the end.
 pub(crate) const NODES: [f64; 4] = [
     0.6358126895828704,
     0.4095798393397535,
@@ -108,7 +109,7 @@ pub(crate) const D: [f64; 5] = [
     2.325825639765069,
 ];
 
-/// Continuous output of order four.
+/// Coefficients of the continuous output of order four.
 pub(crate) const H: [[f64; 8]; 3] = [
     [
         25.948786856663858,

@@ -1,4 +1,4 @@
-//! Interface between an implicit stepper and a system, and the solvers of its linear equations.
+//! Interface between an implicit method and a system, and the solvers of its linear equations.
 //!
 //! The solvers are written here instead of taken from nalgebra. Its decompositions require a
 //! `RealField`, which dual numbers are not, and are slower. Factorisation and four solves (`f64`,
@@ -7,10 +7,10 @@
 use super::System;
 use crate::real::Real;
 
-/// A system linearised at one state and input.
+/// System of differential equations linearised at one state and input.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear<T, const N: usize> {
-    /// Rate of change of the state.
+    /// Time derivative of the state.
     pub slope: [T; N],
     /// Derivatives of the slope: row `i`, column `j` is `d slope[i] / d state[j]`.
     pub jacobian: [[T; N]; N],
@@ -18,18 +18,20 @@ pub struct Linear<T, const N: usize> {
     pub by_input: [T; N],
 }
 
-/// A [`System`] with derivatives.
+/// A [`System`] that also returns its derivatives, for implicit methods.
 pub trait StiffSystem<T: Real, const N: usize>: System<T, N> {
-    /// Solver of `(shift I - jacobian) x = right`; a system knows the zeros of its Jacobian.
+    /// Solver of `(shift I - jacobian) x = right`, which may make use of the structure of the
+    /// Jacobian.
     type Solver: ShiftedSolver<T, N>;
 
-    /// Slope and derivatives at a state and input.
+    /// Returns the time derivative and its derivatives at a state and input.
     fn linearise(&self, state: &[T; N], input: T) -> Linear<T, N>;
 }
 
-/// One fixed step of an implicit method.
+/// Implicit integration method with a fixed step.
 pub trait StiffStepper {
-    /// Advances `state` by `dt`; `input` holds the input at the start, middle and end.
+    /// Advances `state` by `dt`; `input` contains the input at the start, middle and end of the
+    /// step.
     fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
         &self,
         system: &S,
@@ -39,15 +41,15 @@ pub trait StiffStepper {
     );
 }
 
-/// Solver of `(shift I - jacobian) x = right`, factored once and used for many right sides.
+/// Solver of `(shift I - jacobian) x = right`, factored once for many right-hand sides.
 pub trait ShiftedSolver<T: Real, const N: usize>: Copy {
-    /// Factors the matrix.
+    /// Factors the matrix `shift I - jacobian`.
     fn new(jacobian: &[[T; N]; N], shift: T) -> Self;
-    /// Solves for one right side.
+    /// Solves the equations for one right-hand side.
     fn solve(&self, right: &[T; N]) -> [T; N];
 }
 
-/// Two equations, solved by elimination with the larger pivot first.
+/// Solver for two equations by elimination with the larger pivot first.
 ///
 /// (Cramer's rule would be as fast, but its products overflow single precision close to the wall of
 /// the bearing.)
@@ -95,11 +97,11 @@ impl<T: Real> ShiftedSolver<T, 2> for TwoByTwo<T> {
     }
 }
 
-/// Two positions and their velocities: `[p', v'] = [v, a(p, v)]`.
+/// Solver for two positions and their velocities: `[p', v'] = [v, a(p, v)]`.
 ///
-/// The upper rows of the Jacobian are `[0, I]`, so the positions are eliminated by hand and a two
-/// by two solve remains. It has a quarter of the cost of a general four by four and none of its
-/// large pivots.
+/// The upper rows of the Jacobian are `[0, I]`, so the positions are eliminated analytically and
+/// two equations remain. The solution takes a quarter of the time of a general solver for four
+/// equations, and avoids its large pivots.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondOrder<T> {
     /// Value of `1 / shift`.

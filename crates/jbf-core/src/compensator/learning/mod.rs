@@ -1,7 +1,8 @@
-//! Learning compensator of the thesis.
+//! Learning friction compensator of Cohn (1998).
 //!
-//! The film model runs in the loop. A ratchet on the error learns its K0 in mixed lubrication and
-//! its gamma in full film.
+//! A film model in the control loop predicts the friction. An integral rule adapts two parameters
+//! of the film to the control error: K0 in mixed lubrication and gamma in full film.
+//!
 //!
 //! ```text
 //! velocity   p -= C e sgn(v)                                     (6.4), (6.5)
@@ -27,7 +28,7 @@ use crate::law::Law;
 use crate::real::Real;
 use crate::stepper::Euler;
 
-/// The two learned parameters, which are worth saving over a power cycle.
+/// The two learned parameters of the film, which are worth storing while the power is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Learned<T> {
@@ -38,14 +39,14 @@ pub struct Learned<T> {
 }
 
 impl Learned<f64> {
-    /// Initial values of the thesis's programs.
+    /// Initial values in the programs of Cohn (1998).
     pub const THESIS: Self = Self {
         k0: 650_000.0,
         gamma: 33.0,
     };
 }
 
-/// The learning compensator of the thesis.
+/// Learning friction compensator of Cohn (1998).
 #[derive(Clone, Copy, Debug)]
 pub struct Learning<T> {
     law: Journal<T>,
@@ -64,7 +65,7 @@ pub struct Learning<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     film: Film<T>,
-    /// Learned parameters.
+    /// Learned parameters of the film.
     pub learned: Learned<T>,
 }
 
@@ -72,7 +73,8 @@ impl<T: Real> Learning<T> {
     /// Creates a compensator from a film, whose K0 is the initial value, and settings.
     ///
     /// # Errors
-    /// Names the setting that violates its rule. The bounds must enclose the initial values.
+    /// Reports the name of the setting that violates its rule. The bounds must enclose the initial
+    /// values.
     pub fn new(law: Journal<T>, s: &Settings) -> Result<Self, Error> {
         s.check(law.k0.value())?;
         let lift = |l: Learned<f64>| Learned {
@@ -96,9 +98,9 @@ impl<T: Real> Learning<T> {
         })
     }
 
-    /// Starts from the parameters that an earlier run learned, limited to the bounds.
+    /// Starts from the parameters that an earlier run learned, limited to their bounds.
     ///
-    /// If any of them is not finite, nothing changes.
+    /// If any parameter is not finite, nothing changes.
     #[must_use]
     pub fn resumed(mut self, learned: Learned<T>) -> Self {
         if learned.k0.is_finite() && learned.gamma.is_finite() {

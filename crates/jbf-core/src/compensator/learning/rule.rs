@@ -1,33 +1,34 @@
-//! Learning rule for an error: the ratchet of the thesis, Figure 6.1.
+//! Learning rules of the learning compensator for a speed error and an angle error, Figure 6.1 of
+//! Cohn (1998).
 
 use super::Learned;
 use crate::compensator::Sense;
 use crate::real::Real;
 
-/// Meaning of the error, which determines the learning rule.
+/// Learning rule, determined by the type of control error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rule<T> {
-    /// The error is a speed.
+    /// The control error is a speed.
     Velocity,
-    /// The error is an angle. It is clipped to `clip_rad`, and nothing is learned beyond
-    /// `gate_rad`.
+    /// The control error is an angle. The error is clipped to `clip_rad`, and errors beyond
+    /// `gate_rad` are ignored.
     Position {
-        /// Gate, rad; 0.8 rad in the thesis.
+        /// Angle error from which nothing is learned, rad; 0.8 rad in Cohn (1998).
         gate_rad: T,
-        /// Clip, rad; 0.3 rad in the thesis.
+        /// Largest angle error in the rule, rad; 0.3 rad in Cohn (1998).
         clip_rad: T,
     },
 }
 
 impl Rule<f64> {
-    /// Position-control rule of the thesis.
+    /// Rule for position control of Cohn (1998).
     pub const THESIS_POSITION: Self = Self::Position {
         gate_rad: 0.8,
         clip_rad: 0.3,
     };
 
-    /// Learning gains of the thesis per step of 2 ms, for the initial values of its programs.
+    /// Learning gains of Cohn (1998) per step of 2 ms, for the initial values of its programs.
     pub(super) fn thesis_gain(&self) -> Learned<f64> {
         match self {
             Self::Velocity => Learned {
@@ -53,7 +54,8 @@ impl Rule<f64> {
 }
 
 impl<T: Real> Rule<T> {
-    /// Direction and size of the change of a parameter by the error: `-e sgn(v)` in the thesis.
+    /// Change of a learned parameter for a gain of one, with its sign; for a speed error `-e
+    /// sgn(v)` as in Cohn (1998).
     #[inline]
     pub(super) fn lesson(&self, sense: &Sense<T>) -> T {
         let (v, e) = (sense.velocity_rad_s, sense.error);
@@ -72,7 +74,7 @@ impl<T: Real> Rule<T> {
         }
     }
 
-    /// Sign of the friction in the output.
+    /// Sign of the friction in the output of the compensator.
     #[inline]
     pub(super) fn direction(&self, sense: &Sense<T>) -> T {
         match *self {

@@ -1,37 +1,39 @@
-//! Settings of the learning compensator.
+//! Settings of the learning friction compensator.
 
 use super::{Learned, Rule};
 use crate::builder::with_fields;
 use crate::error::{check, not_negative, positive, Error};
 
-/// Settings of [`super::Learning`].
+/// Settings of the learning friction compensator [`super::Learning`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Meaning of the error, which determines the learning rule.
+    /// Learning rule, determined by the type of control error.
     pub rule: Rule<f64>,
-    /// The gamma that the film was built with.
+    /// Value of gamma with which the film was created.
     pub gamma: f64,
-    /// Change of the parameters per step for an error of one.
+    /// Change of the learned parameters per step, for a control error of one.
     pub gain: Learned<f64>,
     /// Lower bounds of the learned parameters.
     pub least: Learned<f64>,
     /// Upper bounds of the learned parameters.
     pub most: Learned<f64>,
-    /// Voltage that corresponds to a friction coefficient of 1, V; 25.5 V in the thesis's listings.
+    /// Voltage that corresponds to a friction coefficient of 1, V; 25.5 V in the programs of Cohn
+    /// (1998).
     pub volts: f64,
     /// Journal radius, m.
     pub radius_m: f64,
-    /// Time step of the loop, s.
+    /// Time step of the control loop, s.
     pub dt_s: f64,
 }
 
 impl Settings {
-    /// Settings for learning from an initial K0 and gamma, those of the film, by a rule.
+    /// Creates settings for a learning rule and the initial K0 and gamma of the film.
     ///
-    /// The gains are the thesis's, scaled in proportion to the initial values. Each parameter may
-    /// fall to a ten-thousandth and rise a hundredfold. `volts` (V for a friction coefficient of
-    /// 1), the journal radius (m) and the time step of the loop (s) are properties of the rig.
+    /// The gains are those of Cohn (1998), scaled in proportion to the initial values. The lower
+    /// bound of each parameter is a ten-thousandth of its initial value, and the upper bound a
+    /// hundred times. The rig determines `volts` (V for a friction coefficient of 1), the journal
+    /// radius (m) and the time step of the loop (s).
     #[must_use]
     pub fn new(rule: Rule<f64>, begin: Learned<f64>, volts: f64, radius_m: f64, dt_s: f64) -> Self {
         let (listed, from) = (rule.thesis_gain(), Learned::THESIS);

@@ -1,4 +1,4 @@
-//! Friction model corrected by an observer, as proposed in chapter 7 of the thesis.
+//! Friction model corrected by an observer, as proposed in chapter 7 of Cohn (1998).
 //!
 //! The model (the film, with the effects of a fit) predicts the friction. An observer of the whole
 //! plant estimates the remaining disturbance:
@@ -7,11 +7,11 @@
 //! F_hat = (level + c) dir + smooth + d
 //! v' = -a v + b (u - F_hat), set-valued at rest;  d' = 0
 //! corrected by l (measured - predicted) from the angle alone, poles at -w, -w, -max(a, w)
-//! c' = mu d dir  (and d falls by as much: what keeps its sign with the motion is friction)
+//! c' = mu d dir  (and d falls by as much: a disturbance that reverses with the motion is friction)
 //! ```
 //!
-//! `smooth` is evaluated at the start of the step, with one exception: a viscous friction that
-//! would stop the shaft within one step and reverse it. With its slope s (V s/rad) the step is
+//! `smooth` is evaluated at the start of the step, except for a viscous friction so steep that the
+//! shaft would reverse within the step. With the slope s of this friction (V s/rad) the step is
 //!
 //! ```text
 //! v+ = keep v + gain (u - s v - ...)     keep = exp(-a dt): rings beyond s = (1 + keep)/gain
@@ -19,13 +19,13 @@
 //! ```
 //!
 //! The second form is used where `gain s > keep` and the first would reverse the shaft. It is also
-//! used where `gain s > keep` and the observer is blind, because nothing else then limits it. Both
-//! forms have the same steady speed. Otherwise, in the first form, the voltage that the loop
-//! applies against smooth friction cancels that friction exactly.
+//! used where `gain s > keep` and the observer is blind, because no measurement then limits the
+//! estimate. Both forms have the same steady speed. Otherwise, in the first form, the voltage that
+//! the loop applies against smooth friction cancels that friction exactly.
 //!
-//! The observer sticks as the plant does, so it learns nothing false at rest. The compensator
-//! outputs F_hat, where `dir` is the direction of the wanted motion if the shaft is slow. It adds
-//! the voltage that the reference motion requires of the plant.
+//! The observer includes stiction like the plant, so its estimates do not drift at rest. The
+//! compensator outputs F_hat, where `dir` is the direction of the wanted motion if the shaft is
+//! slow. The compensator adds the voltage that the plant needs for the reference motion.
 //!
 //! Source: extended state observers (Han 1995; Gao 2003); disturbance observers (Ohnishi 1987);
 //! Friedland & Park (1992) for learning a level that takes the sign of the motion; Cohn (1998),
@@ -46,34 +46,36 @@ use crate::friction::Friction;
 use crate::real::Real;
 use poles::poles;
 
-/// Number of time constants of the observer within which a wrong friction is detected.
+/// Time within which the observer corrects a wrong friction estimate, in time constants of the
+/// observer.
 ///
-/// If the shaft, at the speed that the largest correction causes, turns for longer without a count,
-/// the encoder is doubted.
+/// The encoder is considered faulty if the observer infers a rotation without a count for longer
+/// than this time, at the speed that the largest correction causes.
 const FINDING_OUT: f64 = 3.0;
 
-/// Speed above which the observer has diverged and restarts, rad/s; no shaft turns faster.
+/// Speed above which the observer is considered divergent and restarts, rad/s; no shaft turns
+/// faster.
 const LOST_RAD_S: f64 = 1e6;
 
-/// The learned corrections, which are worth saving over a power cycle.
+/// Learned corrections of the friction model, which are worth storing while the power is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Learned<T> {
-    /// Correction of the friction level, V.
+    /// Correction of the friction level of the model, V.
     pub level_v: T,
-    /// Disturbance without the sign of the motion, V.
+    /// Disturbance that does not change sign with the motion, V.
     pub rest_v: T,
 }
 
-/// The observer-corrected compensator.
+/// Compensator with a friction model that an observer corrects.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed<T, M> {
-    /// The friction model.
+    /// Friction model.
     pub model: M,
     keep: T,
     gain: T,
-    /// Damping a/b of the plant, V s/rad, and input gain times the step b dt, rad/s/V. Both are
-    /// used in a step with steep friction.
+    /// Damping a/b of the plant, V s/rad. With the product b dt of input gain and time step
+    /// (`input_rad_s_v`), it is used in a step with steep friction.
     damping_v_s_rad: T,
     input_rad_s_v: T,
     correct: [T; 3],
@@ -93,26 +95,27 @@ pub struct Observed<T, M> {
     begin: Learned<T>,
 }
 
-/// State of the model and the observer, and the learned corrections.
+/// State of the friction model and the observer, with the learned corrections.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T, S> {
     model: S,
     friction: Friction<T>,
-    /// Slope of the smooth friction where it is too steep for one step, V s/rad; otherwise zero.
+    /// Slope of the smooth friction if it is too steep for one explicit step, V s/rad; otherwise
+    /// zero.
     steep_v_s_rad: T,
     velocity_rad_s: T,
     slip_rad: T,
-    /// Rotation of the shaft since the last count, as estimated by the observer, rad.
+    /// Rotation of the shaft since the last count, estimated by the observer, rad.
     turned_rad: T,
-    /// Learned corrections.
+    /// Learned corrections of the friction model.
     pub learned: Learned<T>,
 }
 
 impl<T: Real, M: Carried<T>> Observed<T, M> {
-    /// Creates a compensator from a model and settings.
+    /// Creates a compensator from a friction model and settings.
     ///
     /// # Errors
-    /// Names the setting that violates its rule.
+    /// Reports the name of the setting that violates its rule.
     pub fn new(model: M, s: &Settings) -> Result<Self, Error> {
         s.check()?;
         let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
@@ -161,7 +164,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
 
     /// Starts from the corrections that an earlier run learned, limited to their bounds.
     ///
-    /// If any of them is not finite, nothing changes.
+    /// If any correction is not finite, nothing changes.
     #[must_use]
     pub fn resumed(mut self, learned: Learned<T>) -> Self {
         if learned.level_v.is_finite() && learned.rest_v.is_finite() {
@@ -179,8 +182,8 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
-    /// Slope of the model's smooth friction, V s/rad, where one step of it would more than stop the
-    /// shaft; zero where the step is stable.
+    /// Returns the slope of the model's smooth friction, V s/rad, if one explicit step with this
+    /// friction would reverse the shaft; zero if the step is stable.
     #[inline]
     fn steep(&self, model: &M::State, velocity_rad_s: T) -> T {
         let way = if velocity_rad_s < T::ZERO {
@@ -198,13 +201,13 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
-    /// True if a step with the smooth friction at its start ends on the other side of rest.
+    /// Returns true if an explicit step with the smooth friction reverses the speed.
     #[inline]
     fn turns_round(&self, velocity_rad_s: T, net_v: T) -> bool {
         (self.keep * velocity_rad_s + self.gain * net_v) * velocity_rad_s < T::ZERO
     }
 
-    /// Restarts from rest and keeps the learned corrections.
+    /// Restarts the observer from rest and keeps the learned corrections.
     #[cold]
     fn begin_anew(&self, state: &mut State<T, M::State>) {
         let learned = state.learned;
@@ -214,7 +217,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
-    /// Friction level from the model and the observer together, V.
+    /// Returns the friction level of the model with the correction of the observer, V.
     #[inline]
     fn level_v(&self, state: &State<T, M::State>) -> T {
         (state.friction.jump + state.learned.level_v).max(T::ZERO)

@@ -1,11 +1,12 @@
-//! Gains of the sampled observer of the plant.
+//! Gains of the discrete-time observer of the plant.
 
-/// Gains that place the poles of the sampled observer.
+/// Computes the observer gains for angle, speed and disturbance that place the poles of the
+/// discrete-time observer.
 ///
-/// Two poles are at `p`. The third is at the plant's own pole, or at `p` too where that is faster.
-/// The gains follow from Ackermann's formula for angle, speed and disturbance, observed through the
-/// angle after each step. A pole slower than the plant's own would make the first gain negative,
-/// and a stuck observer would run away.
+/// Two poles are at `p`. The third is at the pole of the plant, or at `p` if that is faster. The
+/// gains follow from Ackermann's formula; the angle is measured after each step. With a pole slower
+/// than that of the plant, the first gain would be negative, and the estimates would diverge while
+/// the observer is at rest.
 pub(super) fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
     let h = 0.5 * dt_s;
     // Prediction: x + h (v + v'), v' = keep v - gain d, d.
@@ -43,7 +44,7 @@ pub(super) fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Error of angle, speed and disturbance after one step of the corrected observer.
+    /// Errors of angle, speed and disturbance after one step of the corrected observer.
     fn next(keep: f64, gain: f64, dt_s: f64, correct: [f64; 3], e: [f64; 3]) -> [f64; 3] {
         let h = 0.5 * dt_s;
         let predicted = [
@@ -54,7 +55,8 @@ mod tests {
         core::array::from_fn(|i| predicted[i] - correct[i] * predicted[0])
     }
 
-    /// Sum of `c_i A^i e` for the polynomial with these roots; zero, by Cayley-Hamilton.
+    /// Value of the polynomial with these roots at the matrix `A` of a step, times `e`; zero by the
+    /// Cayley-Hamilton theorem.
     fn left(roots: [f64; 3], step: impl Fn([f64; 3]) -> [f64; 3], e: [f64; 3]) -> f64 {
         let [a, b, c] = roots;
         let (one, two) = (step(e), step(step(e)));

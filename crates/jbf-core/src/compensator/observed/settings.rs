@@ -1,32 +1,34 @@
-//! Settings of the observer-corrected compensator.
+//! Settings of the compensator with a friction model that an observer corrects.
 
 use crate::builder::with_fields;
 use crate::control_law::BaseLaw;
 use crate::error::{check, finite, not_negative, positive, Error};
 use crate::plant::Drive;
 
-/// Settings of [`super::Observed`], in SI units; `jbf control tune` computes them from a model.
+/// Settings of the compensator [`super::Observed`], in SI units; `jbf control tune` computes them
+/// from a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// The plant's damping `a`, 1/s.
+    /// Damping `a` of the plant, 1/s.
     pub damping_1_s: f64,
-    /// The plant's input gain `b`, rad/s^2/V.
+    /// Input gain `b` of the plant, rad/s^2/V.
     pub input_rad_s2_v: f64,
     /// Bandwidth that sets the poles of the observer, rad/s.
     pub bandwidth_rad_s: f64,
-    /// Rate at which a lasting correction is attributed to friction, 1/s.
+    /// Rate at which a constant disturbance is attributed to friction, 1/s.
     pub learning_1_s: f64,
     /// Largest correction of the friction level, V, in either direction.
     pub level_limit_v: f64,
-    /// Largest remaining disturbance, V, in either direction.
+    /// Largest disturbance in addition to friction, V, in either direction.
     pub rest_limit_v: f64,
-    /// Speed below which the shaft counts as slow, rad/s; a few times the noise of the estimate.
+    /// Speed below which the shaft is considered slow, rad/s; a few times the noise of the speed
+    /// estimate.
     pub slow_rad_s: f64,
-    /// Wanted speed per error of angle, 1/s; zero in velocity control.
+    /// Desired speed per angle error, 1/s; zero in velocity control.
     pub approach_1_s: f64,
-    /// Fraction of the level that is output while the shaft is slow; below one the loop cannot
-    /// hunt.
+    /// Fraction of the friction level that is output while the shaft is slow; below one, limit
+    /// cycles (hunting) cannot occur.
     pub breakaway: f64,
     /// Additional feedback of the angle error, V/rad, on top of the control law.
     ///
@@ -34,18 +36,19 @@ pub struct Settings {
     pub stiffer_v_rad: f64,
     /// Additional feedback of the speed error, V s/rad, on top of the control law.
     pub stiffer_v_s_rad: f64,
-    /// Feedforward gain of the control law itself on the wanted speed, V s/rad.
+    /// Gain of the control law from the reference speed to the output, V s/rad; see
+    /// [`BaseLaw::forward_v_s_rad`].
     pub law_forward_v_s_rad: f64,
-    /// Time step of the loop, s.
+    /// Time step of the control loop, s.
     pub dt_s: f64,
 }
 
 impl Settings {
-    /// Settings for a drive, from the bandwidth of the observer (rad/s), the speed below which the
-    /// shaft counts as slow (rad/s), and the time step of the loop (s).
+    /// Creates settings for a drive from the bandwidth of the observer (rad/s), the speed below
+    /// which the shaft is considered slow (rad/s), and the time step of the control loop (s).
     ///
-    /// All limits are zero, so nothing is corrected until limits are set. No control law is assumed
-    /// until [`Settings::beside`] sets one.
+    /// All limits are zero, so that no correction is made until limits are set. No control law is
+    /// assumed until [`Settings::beside`] sets one.
     #[must_use]
     pub const fn new(drive: &Drive, bandwidth_rad_s: f64, slow_rad_s: f64, dt_s: f64) -> Self {
         Self {
@@ -76,10 +79,11 @@ impl Settings {
         with_law_forward_v_s_rad => law_forward_v_s_rad: f64,
     }
 
-    /// Adapts the settings to this control law.
+    /// Adapts the settings to a control law.
     ///
-    /// A position loop is stiffened to a natural frequency `loop_rad_s` and approaches its goal at
-    /// a third of it. A velocity loop ignores the frequency.
+    /// A position loop gets additional stiffness for the natural frequency `loop_rad_s`, and the
+    /// rate of approach to its target is a third of it. The frequency has no effect on a velocity
+    /// loop.
     #[must_use]
     pub fn beside(mut self, law: &BaseLaw<f64>, loop_rad_s: f64) -> Self {
         self.law_forward_v_s_rad = law.forward_v_s_rad();

@@ -1,4 +1,4 @@
-//! Construction of the law: checks every number and precomputes constants.
+//! Construction of the journal law: checks every number and precomputes constants.
 
 use super::{Journal, Loaded, Parameters};
 use crate::bearing::Bearing;
@@ -8,10 +8,10 @@ use crate::real::Real;
 use core::f64::consts::PI;
 
 impl<T: Real> Journal<T> {
-    /// Checks the numbers and precomputes the constants.
+    /// Creates a journal law for a bearing, a load (N) and parameters, on the time scale `clock`.
     ///
     /// # Errors
-    /// Names the first number that is not positive and finite.
+    /// Reports the first number that is not positive and finite.
     pub fn new(
         bearing: &Bearing,
         load_n: f64,
@@ -65,8 +65,8 @@ impl<T: Real> Journal<T> {
         Ok(law)
     }
 
-    /// Sets the transition eccentricity instead of the solution of (3.20), to reproduce the printed
-    /// tables.
+    /// Sets the transition eccentricity instead of solving equation (3.20), to reproduce the tables
+    /// of Cohn (1998).
     ///
     /// # Errors
     /// `eps_tr` must lie between 0 and 1.

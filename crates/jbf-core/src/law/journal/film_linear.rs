@@ -1,4 +1,4 @@
-//! Derivatives of the equations of motion of the film, in the co-rotating frame:
+//! Derivatives of the equations of motion of the film, in the co-rotating frame.
 //!
 //! ```text
 //! slope = vr r + vt t, d slope/d eps = (vr_e, vt_e), d slope/d phi = (vr_phi - vt, vt_phi + vr)
@@ -12,7 +12,7 @@ use crate::real::Real;
 use crate::stepper::{Linear, StiffSystem, System, TwoByTwo};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// Position of the journal centre in polar form.
+/// Position of the journal centre in polar coordinates.
 #[derive(Clone, Copy)]
 pub(crate) struct Polar<T> {
     pub e: T,
@@ -22,7 +22,8 @@ pub(crate) struct Polar<T> {
 }
 
 impl<T: Real> Polar<T> {
-    /// Position limited to the inside of the bearing in its own direction, as in [`Film`].
+    /// Creates a position from Cartesian coordinates, limited to the inside of the bearing in its
+    /// own direction, as in [`Film`].
     #[inline]
     pub fn held(x: T, y: T) -> Self {
         let distance = (x * x + y * y).sqrt().max(T::of(1e-12));
@@ -35,7 +36,7 @@ impl<T: Real> Polar<T> {
         }
     }
 
-    /// Rotated matrix `Q M Q^T`.
+    /// Returns the matrix `Q M Q^T`, with the rotation `Q` of the co-rotating frame.
     #[inline]
     pub fn turned(&self, m: [[T; 2]; 2]) -> [[T; 2]; 2] {
         let (c, s) = (self.cos, self.sin);
@@ -47,7 +48,7 @@ impl<T: Real> Polar<T> {
         ]
     }
 
-    /// Vector from its radial and tangential components.
+    /// Returns the Cartesian vector with these radial and tangential components.
     #[inline]
     pub fn vector(&self, radial: T, tangential: T) -> [T; 2] {
         [
@@ -57,7 +58,8 @@ impl<T: Real> Polar<T> {
     }
 }
 
-/// Slope and derivatives of the film under an asperity load and its stiffness `dW/d eps`.
+/// Returns the time derivative of the position and its Jacobian, for an asperity load and its
+/// stiffness `dW/d eps`.
 #[inline]
 pub(super) fn linearise<T: Real>(
     load_number: T,
@@ -111,15 +113,15 @@ impl<T: Real> StiffSystem<T, 2> for Film<'_, T> {
     }
 }
 
-/// The film with or without asperity contact, at any eccentricity.
+/// Film equations with or without asperity contact at any eccentricity ratio.
 ///
-/// It is smooth where the law itself has the kink of `W` at eps_tr, so that an error-controlled
-/// step may extend across it. Outside the bearing its values are not finite.
+/// These equations are smooth at eps_tr, where `W` of the law has a kink, so that a step with error
+/// control may extend beyond eps_tr. The values outside the bearing are not finite.
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothFilm<T> {
     load_number: T,
     eps_tr: T,
-    /// Stiffness `K0`, or zero for a film without contact.
+    /// Asperity stiffness constant `K0`, or zero for a film without contact.
     k0: T,
 }
 
@@ -134,7 +136,7 @@ impl<T: Real> SmoothFilm<T> {
 }
 
 impl SmoothFilm<f64> {
-    /// Placeholder film without asperity load.
+    /// Placeholder film without asperity load, whose values stay finite.
     pub(crate) const NONE: Self = Self {
         load_number: 1.0,
         eps_tr: 0.5,
@@ -143,7 +145,7 @@ impl SmoothFilm<f64> {
 }
 
 impl<T: Copy> SmoothFilm<T> {
-    /// Load number, eps_tr, and `K0` or zero.
+    /// Returns the dimensionless load, eps_tr, and `K0` or zero.
     #[inline(always)]
     pub(crate) fn parts(&self) -> [T; 3] {
         [self.load_number, self.eps_tr, self.k0]
@@ -217,7 +219,7 @@ mod tests {
         JournalFull::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
     }
 
-    /// Checks hand-written derivatives against those of dual numbers.
+    /// Checks analytical derivatives against those of dual numbers.
     fn agree<const N: usize>(system: &impl StiffSystem<D, N>, state: [f64; N], ub: f64) {
         let lifted = core::array::from_fn(|i| D::parameter(state[i], i));
         let exact = system.slope(&lifted, D::parameter(ub, 4));

@@ -1,15 +1,15 @@
-//! Equations of motion of the film, (3.18) and (3.19), in `x = eps cos(phi)`, `y = eps sin(phi)`,
-//! with the film integrals combined:
+//! Equations of motion of the film, (3.18) and (3.19) of Cohn (1998), in `x = eps cos(phi)`, `y =
+//! eps sin(phi)`, with the film integrals combined:
 //!
 //! ```text
 //! J12/J11         = -(4/pi) eps / sqrt(d),  d = 1 - eps^2
 //! J22 - J12^2/J11 = d^(-5/2) [ pi/2 + (pi - 8/pi) eps^2 ]
 //! ```
 //!
-//! The latency of a step is that of its longest chain of operations, so the two square roots and
-//! the division are independent of each other. The factors that multiply them are computed
-//! meanwhile. `sqrt(d)^2 = d` leaves no root in the rotation. On x86-64 this is 1.9 times faster
-//! than the printed order.
+//! The latency of a step is that of its longest sequence of dependent operations, so the two square
+//! roots and the division are independent of each other. Because `sqrt(d)^2 = d`, the rotation has
+//! no root. On x86-64 this order of operations is 1.9 times faster than that of the printed
+//! equations.
 
 use super::film_slopes;
 use super::{Journal, Loaded};
@@ -18,19 +18,20 @@ use crate::real::Real;
 use crate::stepper::System;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// Distance from the centre below which the journal has no direction.
+/// Eccentricity ratio below which the journal is at the centre, where its direction is undefined.
 const CENTRE: f64 = 1e-12;
 
-/// True where the equations hold without a limit: off the centre and inside the bearing.
+/// Returns true if the equations hold without a limit, for a position with `e2 = x^2 + y^2` off the
+/// centre and inside the bearing.
 #[inline(always)]
 pub(super) fn within<T: Real>(e2: T) -> bool {
     e2 <= T::EPS_LIMIT * T::EPS_LIMIT && e2 >= T::of(CENTRE * CENTRE)
 }
 
-/// The film as a system of two states driven by `|Ub|`.
+/// Film equations as a system of two states with the input `|Ub|`.
 ///
-/// The states are the displacement since the start of the step, which single precision resolves far
-/// better than the position.
+/// The states are the displacement since the start of the step, because single precision resolves
+/// it much better than the position.
 pub(super) struct Film<'a, T> {
     pub(super) law: &'a Journal<T>,
     pub(super) loaded: &'a Loaded<T>,
@@ -64,10 +65,10 @@ impl<T: Real> Film<'_, T> {
         self.inside(x, y, e2, ub)
     }
 
-    /// Rate of change of the position outside the bearing and at the centre.
+    /// Time derivative of the position outside the bearing and at the centre.
     ///
-    /// Stages of a coarse step may be outside the bearing: they are evaluated at the limit, in
-    /// their own direction. The centre is evaluated next to it.
+    /// Stages of a coarse step may be outside the bearing. They are evaluated at the largest
+    /// eccentricity in the same direction. The centre is evaluated at a small distance from it.
     #[cold]
     #[inline(never)]
     fn edge(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
@@ -88,17 +89,18 @@ impl<T: Real> Film<'_, T> {
     }
 }
 
-/// Asperities, which carry load in contact.
+/// Model of the asperities, which carry a part of the load in contact.
 #[derive(Clone, Copy)]
 pub(super) struct Asperities<T> {
     pub(super) k0: T,
     pub(super) eps_tr: T,
-    /// False if the parabola continues below eps_tr, for a step that may extend across it.
+    /// True if the asperities separate below eps_tr. False if the parabola continues there, for a
+    /// step that may extend beyond eps_tr.
     pub(super) part: bool,
 }
 
 impl<T: Real> Asperities<T> {
-    /// Depth of contact at an eccentricity ratio.
+    /// Depth of contact `e - eps_tr` at an eccentricity ratio, zero without contact.
     #[inline(always)]
     pub(super) fn touch(&self, e: T) -> T {
         e - self.eps_tr
@@ -116,7 +118,7 @@ impl<T: Real> Asperities<T> {
         }
     }
 
-    /// Returns the values without derivatives.
+    /// Returns the asperity model without derivatives.
     #[inline(always)]
     pub(super) fn plain(&self) -> Asperities<f64> {
         Asperities {
@@ -127,7 +129,7 @@ impl<T: Real> Asperities<T> {
     }
 }
 
-/// Costly terms at a position, shared by all functions of it: two roots and one division.
+/// Terms at a position that several functions share: two square roots and one division.
 #[derive(Clone, Copy)]
 pub(super) struct Gap<T> {
     /// Value of `eps^2`.
@@ -173,7 +175,7 @@ impl<T: Real> Gap<T> {
     }
 }
 
-/// Rate of change of the position at `e2 = x^2 + y^2`, well between 0 and 1.
+/// Time derivative of the position at `e2 = x^2 + y^2`, which must not be close to 0 or 1.
 #[inline(always)]
 pub(super) fn slope<T: Real>(
     fb: T,
@@ -190,7 +192,8 @@ pub(super) fn slope<T: Real>(
     }
 }
 
-/// Rate of change of the position, computed operation by operation.
+/// Time derivative of the position in which every operation carries the derivatives of its
+/// arguments.
 #[inline(always)]
 pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T) -> [T; 2] {
     let &Gap {
@@ -227,8 +230,8 @@ mod tests {
         }
     }
 
-    /// At the centre the load squeezes the film straight down, `eps' = (2/pi) Fb`. Beyond the edge
-    /// a stage has the slope at the edge in its direction.
+    /// The load moves a journal at the centre straight down with `eps' = (2/pi) Fb`. A stage
+    /// outside the bearing has the time derivative at the edge in its direction.
     #[test]
     fn film_slope_is_defined_at_the_centre_and_held_beyond_the_edge() {
         let law = Journal::<f64>::new(

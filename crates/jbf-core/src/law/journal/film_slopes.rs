@@ -1,8 +1,8 @@
-//! Film with derivatives: partial derivatives with respect to its few inputs in plain numbers,
-//! joined once with the derivatives that the inputs carry.
+//! Film equations with derivatives: partial derivatives with respect to the few inputs, which the
+//! chain rule combines once with the derivatives that the inputs carry.
 //!
-//! Computed operation by operation, each of about sixty operations carries all derivatives; joined,
-//! a slope carries them through a dozen. With
+//! Otherwise each of about sixty operations would carry all derivatives, instead of about a dozen.
+//! With
 //!
 //! ```text
 //! g = d^(5/2) / (eps D)      h = (4/pi) d^2 / D      q = (2/pi) d^(3/2) / eps^2
@@ -19,7 +19,7 @@ use crate::friction::Friction;
 use crate::real::Real;
 use core::f64::consts::FRAC_2_PI;
 
-/// Rate of change of the position in the film at `e2 = x^2 + y^2`, with combined derivatives.
+/// Time derivative of the position in the film at `e2 = x^2 + y^2`, with combined derivatives.
 #[inline(always)]
 pub(super) fn motion<T: Real>(
     fb: T,
@@ -96,7 +96,8 @@ pub(super) fn motion<T: Real>(
     ]
 }
 
-/// Friction, (3.14), from `f_m`, `gamma (C R/L^2) 2 pi / U_tr` and `1/Fb`.
+/// Friction coefficient, (3.14), from `f_m`, `gamma (C R/L^2) 2 pi / U_tr` and `1/Fb`, with
+/// combined derivatives.
 #[inline(always)]
 pub(super) fn sliding<T: Real>(
     [f_m, viscous_s_m, per_load]: [T; 3],
@@ -156,7 +157,7 @@ mod tests {
         }
     }
 
-    /// Compares joined derivatives with those carried through each operation, for all inputs.
+    /// Combined derivatives equal those carried through each operation, for every input.
     #[test]
     fn combined_film_derivatives_equal_those_carried_through_each_operation() {
         for (eps, phi, ub) in [

@@ -1,4 +1,5 @@
-//! Reduced Harnoy-Friedland model of a journal bearing, equations (3.14), (3.18), (3.19):
+//! Harnoy-Friedland model of a journal bearing without the inertia of the journal, equations
+//! (3.14), (3.18), (3.19) of Cohn (1998):
 //!
 //! ```text
 //! eps' = (Fb cos(phi) - W + Fb J12 sin(phi)/J11) / (J22 - J12^2/J11)
@@ -43,13 +44,14 @@ use parameters::FILM_PARAMETERS;
 /// Attitude angle at the start of a run, rad; its influence decays within a second.
 pub const START_PHI_RAD: f64 = 0.15;
 
-/// Lightest load that the law uses, as a share of the constructor's load.
+/// Lightest load that the law uses, as a fraction of the load given to its constructor.
 ///
-/// By (3.20) eps_tr falls with the load, to zero for a lifted bearing. Asperities would then touch
-/// at the centre, with a stiffness too high for explicit steps. The model has no meaning there.
+/// By (3.20) eps_tr falls with the load, to zero for a bearing without load. The asperities would
+/// then be in contact at the centre, with a stiffness too high for explicit steps. The model has no
+/// meaning there.
 pub const LIGHTEST_SHARE: f64 = 0.01;
 
-/// The law with precomputed constants.
+/// Friction law of a journal bearing, with precomputed constants.
 #[derive(Clone, Copy, Debug)]
 pub struct Journal<T> {
     /// Load number `Fb` per newton.
@@ -61,14 +63,15 @@ pub struct Journal<T> {
     pub(crate) inverse_u_tr: T,
     /// Dimensionless time per second.
     pub(crate) rate: T,
-    /// Load of the constructor and its eps_tr, stored so that a start needs no computation.
+    /// Load number and eps_tr for the load given to the constructor, stored so that a start needs
+    /// no computation.
     nominal: Loaded<T>,
     clock: Clock,
 }
 
 impl<T: Real> Journal<T> {
-    /// Load number and transition eccentricity under a load; see [`LIGHTEST_SHARE`] for a lifted
-    /// bearing.
+    /// Returns the load number and the transition eccentricity for a load (N), which is at least
+    /// [`LIGHTEST_SHARE`] of the nominal load.
     pub fn under(&self, load_n: T) -> Loaded<T> {
         if load_n == self.nominal.load_n {
             return self.nominal;
@@ -85,12 +88,13 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// Load number and transition eccentricity under the constructor's load.
+    /// Returns the load number and the transition eccentricity for the load given to the
+    /// constructor.
     pub fn nominal(&self) -> Loaded<T> {
         self.nominal
     }
 
-    /// Asperities under a load.
+    /// Returns the asperity model for a load.
     #[inline(always)]
     fn asperities(&self, loaded: &Loaded<T>) -> Asperities<T> {
         Asperities {
@@ -107,7 +111,8 @@ impl<T: Real> Journal<T> {
         Asperities { k0, eps_tr, part }.load(eps)
     }
 
-    /// Friction at an eccentricity ratio, given by its square `e2`, and a speed, (3.14).
+    /// Friction coefficient, (3.14), at a speed (m/s, signed) and an eccentricity ratio, given by
+    /// its square `e2`.
     #[inline(always)]
     pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Friction<T> {
         let asperities = self.asperities(loaded);
@@ -128,7 +133,7 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// Advances one step with any explicit stepper; [`Law::advance`] uses Runge-Kutta.
+    /// Advances the film by one step with any explicit method; [`Law::advance`] uses Runge-Kutta.
     #[inline]
     pub fn advance_with<S: Stepper>(
         &self,
@@ -141,8 +146,9 @@ impl<T: Real> Journal<T> {
         self.advance_inline(stepper, state, speed_m_s, rate, dt_s);
     }
 
-    /// As [`Journal::advance_with`], always inlined: for loops that are compiled for a wider
-    /// instruction set.
+    /// Advances the film by one step with any explicit method, always inlined.
+    ///
+    /// It is [`Journal::advance_with`] for loops that are compiled for a wider instruction set.
     #[inline(always)]
     pub fn advance_inline<S: Stepper>(
         &self,
@@ -165,7 +171,7 @@ impl<T: Real> Journal<T> {
         self.moved(state, way);
     }
 
-    /// Advances one step with any implicit stepper.
+    /// Advances the film by one step with any implicit method.
     #[inline]
     pub fn advance_stiff_with<S: StiffStepper>(
         &self,
@@ -187,7 +193,7 @@ impl<T: Real> Journal<T> {
         self.moved(state, way);
     }
 
-    /// Stores the end of a step, limited to the inside of the bearing.
+    /// Stores the position after the displacement `way`, limited to the inside of the bearing.
     #[inline(always)]
     fn moved(&self, state: &mut State<T>, way: [T; 2]) {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
@@ -217,11 +223,11 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// Eccentricity at which a step that was too coarse is limited.
+    /// Eccentricity ratio to which the journal is limited after a step that was too coarse.
     ///
-    /// It is that of a journal at rest, whose asperities alone carry the load. Where that is too
-    /// deep (soft asperities), it is nine tenths of the distance from eps_tr to the wall. Closer to
-    /// the wall the film hardly flows, and the journal would stay there for hours.
+    /// It is that of a journal at rest, whose asperities carry the whole load. If that is too deep
+    /// (soft asperities), it is nine tenths of the distance from eps_tr to the wall. Closer to the
+    /// wall, the film hardly flows, and the journal would remain there for hours.
     pub(crate) fn deepest(&self, loaded: &Loaded<T>) -> T {
         let at_rest = loaded.eps_tr + (loaded.load_number / self.k0).sqrt();
         let near_wall = loaded.eps_tr + (T::ONE - loaded.eps_tr) * T::of(0.9);
@@ -234,7 +240,7 @@ impl<T: Real> Law<T> for Journal<T> {
 
     const FILM_PARAMETERS: Option<[usize; 2]> = Some(FILM_PARAMETERS);
 
-    /// Square of the eccentricity ratio.
+    /// Returns the square of the eccentricity ratio.
     #[inline(always)]
     fn film(&self, state: &State<T>) -> T {
         state.e2
@@ -277,8 +283,10 @@ impl<T: Real> Law<T> for Journal<T> {
         self.pressed_n(load_n) / self.nominal.load_n
     }
 
-    /// The scales belong to one load and are one under the constructor's load, so its precomputed
-    /// values remain valid.
+    /// Returns the law with U_tr and K0 multiplied by the scales of the present load.
+    ///
+    /// The scales are one at the nominal load, so the precomputed values for this load remain
+    /// valid.
     #[inline(always)]
     fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
         let slower = T::ONE / scales.transition_speed;

@@ -1,4 +1,4 @@
-//! Description of the law in the catalogue.
+//! Description of the journal law in the catalogue.
 
 use super::{Journal, Parameters, PARAMETERS, SUMMARY};
 use crate::bearing::Bearing;
@@ -31,8 +31,7 @@ impl<T: Real> Named<T> for Journal<T> {
     }
 }
 
-/// Checks the arguments from which both journal laws are built; returns bearing, load (N) and
-/// parameters.
+/// Checks the arguments of both journal laws; returns the bearing, the load (N) and the parameters.
 pub(in crate::law) fn parts<'a, T: Real>(
     bearing: Option<&'a Bearing>,
     load_n: Option<f64>,

@@ -1,14 +1,14 @@
-//! Parameters of the law: their description, the printed tables, and the original form (3.15) of
-//! the asperity stiffness.
+//! Parameters of the journal law: their descriptions, the values in the tables of Cohn (1998), and
+//! the original form (3.15) of the asperity stiffness.
 
 use crate::error::{check, positive, ParameterError};
 use crate::page::{Bound, Parameter};
 
-/// Physical meaning, in one line, for the catalogue.
+/// Physical meaning of the journal law for the catalogue, in one line.
 pub const SUMMARY: &str =
     "hydrodynamic journal bearing, boundary to full film (reduced Harnoy-Friedland model)";
 
-/// Names, bounds and start values of [`Parameters`], in order.
+/// Descriptions of [`Parameters`], in the order of their values.
 pub const PARAMETERS: &[Parameter] = &[
     Parameter::new(
         "f_m",
@@ -45,10 +45,10 @@ pub const PARAMETERS: &[Parameter] = &[
     .log(),
 ];
 
-/// Indices of `U_tr_m_s` and `K0`, which affect the film.
+/// Indices of the parameters `U_tr_m_s` and `K0`, which affect the film.
 pub(in crate::law) const FILM_PARAMETERS: [usize; 2] = [1, 2];
 
-/// The four parameters of a fit.
+/// Parameters of the journal law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {
     /// Largest friction coefficient of the asperities, -.
@@ -62,28 +62,28 @@ pub struct Parameters<T> {
 }
 
 impl Parameters<f64> {
-    /// Table 4.2: two-way motion and Stribeck curve at 104 N.
+    /// Values of Table 4.2 of Cohn (1998): motion in both directions and Stribeck curve at 104 N.
     pub const TABLE_4_2: Self = Self {
         f_m: 0.26,
         u_tr_m_s: 0.06,
         k0: 7.5e5,
         gamma: 33.0,
     };
-    /// Table 4.3: two-way motion at 83.5 N.
+    /// Values of Table 4.3 of Cohn (1998): motion in both directions at 83.5 N.
     pub const TABLE_4_3: Self = Self {
         f_m: 0.26,
         u_tr_m_s: 0.05,
         k0: 6.25e5,
         gamma: 33.0,
     };
-    /// Table 4.4: one-way motion at 104 N.
+    /// Values of Table 4.4 of Cohn (1998): motion in one direction at 104 N.
     pub const TABLE_4_4: Self = Self {
         f_m: 0.26,
         u_tr_m_s: 0.05,
         k0: 6.25e5,
         gamma: 33.0,
     };
-    /// Table 4.5: one-way motion at 83.5 N.
+    /// Values of Table 4.5 of Cohn (1998): motion in one direction at 83.5 N.
     pub const TABLE_4_5: Self = Self {
         f_m: 0.26,
         u_tr_m_s: 0.05,
@@ -92,10 +92,10 @@ impl Parameters<f64> {
     };
 }
 
-/// Computes `K0` from the original pair of (3.15): `K0 = kappa0 / (eps_b - eps_tr)`.
+/// Computes `K0` from the original parameters of (3.15): `K0 = kappa0 / (eps_b - eps_tr)`.
 ///
 /// # Errors
-/// `kappa0` must be positive, and `eps_b` must lie between `eps_tr` and 1.
+/// `kappa0` must be positive, and `eps_b` must be between `eps_tr` and 1.
 pub fn k0_from_original(kappa0: f64, eps_b: f64, eps_tr: f64) -> Result<f64, ParameterError> {
     positive("kappa0", kappa0)?;
     check(

@@ -1,14 +1,14 @@
-//! Several laws in parallel, each with its film: one array per variable, so that a compiler can
-//! place neighbours in the lanes of one register.
+//! Several journal laws and films in parallel, with one array per variable.
 //!
-//! The physics is in [`Journal`]; this module only arranges the data. `T` is meant to be a lane
+//! The compiler can then place adjacent laws in the lanes of one vector register. The physics is in
+//! [`Journal`]; this module only arranges the data. `T` is meant to be a lane
 //! ([`Real::SIDE_BY_SIDE`]).
 
 use super::{Journal, Loaded, State};
 use crate::clock::Clock;
 use crate::real::Real;
 
-/// Data of `N` laws and films.
+/// Constants of `N` journal laws and states of their films, with one array per variable.
 #[derive(Clone, Copy, Debug)]
 pub struct SideBySide<T, const N: usize> {
     fb_per_n: [T; N],
@@ -29,7 +29,7 @@ pub struct SideBySide<T, const N: usize> {
     clamped: [u32; N],
 }
 
-/// Converts a value to another number type.
+/// Converts a value to another number type of the same precision, without derivatives.
 #[inline(always)]
 fn as_kind<S: Real, T: Real>(value: S) -> T {
     T::of(value.value())
@@ -60,8 +60,8 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Law number `i`, for stepping only: its nominal load is that of the film, and its rate
-    /// includes its clock.
+    /// Returns law number `i`, for stepping only: its nominal load is that of the film, and its
+    /// rate includes the time scale.
     #[inline(always)]
     pub fn law(&self, i: usize) -> Journal<T> {
         Journal {
@@ -86,7 +86,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Film number `i`.
+    /// Returns the state of film number `i`.
     #[inline(always)]
     pub fn film(&self, i: usize) -> State<T> {
         State {
@@ -98,7 +98,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Film number `i` in a scalar number type.
+    /// Returns the state of film number `i` in a scalar number type.
     pub fn film_alone<S: Real>(&self, i: usize) -> State<S> {
         let film = self.film(i);
         State {
@@ -115,7 +115,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Stores film number `i`, under the load that it had.
+    /// Replaces the state of film number `i`, under the load that the film had.
     #[inline(always)]
     pub fn put<S: Real>(&mut self, i: usize, film: &State<S>) {
         self.x[i] = as_kind(film.xy[0]);
@@ -126,7 +126,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         self.clamped[i] = film.clamped;
     }
 
-    /// Number of times each film was limited to the inside of the bearing, or must be.
+    /// Returns the number of steps of each film that left the bearing.
     #[inline(always)]
     pub fn clamped(&self) -> [u32; N] {
         self.clamped

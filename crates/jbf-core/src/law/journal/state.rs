@@ -1,42 +1,44 @@
-//! State of the film, and the load-dependent quantities of the law.
+//! State of the film, and the constants of the journal law that depend on the load.
 
 use crate::real::Real;
 
-/// Load-dependent quantities.
+/// Constants of the journal law that depend on the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loaded<T> {
     pub(crate) load_n: T,
-    /// Load number Fb.
+    /// Load number `Fb`, equation (3.1) of Cohn (1998).
     pub load_number: T,
     pub(super) inverse_load_number: T,
-    /// Transition eccentricity.
+    /// Transition eccentricity, at which asperity contact begins.
     pub eps_tr: T,
 }
 
 impl<T: Real> Loaded<T> {
-    /// Load, N.
+    /// Returns the load on the bearing, N.
     pub fn load_n(&self) -> T {
         self.load_n
     }
 }
 
-/// Present state of the film.
+/// State of the film: the position of the journal in its bearing, under the present load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
     pub(super) xy: [T; 2],
     /// Value of `x^2 + y^2` after the last step.
     pub(super) e2: T,
-    /// Accumulated rounding error of `xy`. Without it a single-precision film that creeps, or takes
-    /// short steps, would not move.
+    /// Accumulated rounding error of `xy`.
+    ///
+    /// Without it, a film in single precision that moves slowly, or takes short steps, would not
+    /// move.
     pub(super) kept: [T; 2],
     pub(super) loaded: Loaded<T>,
-    /// Number of steps that were limited to the inside of the bearing, because `dt_s` was too
-    /// coarse or the input not finite.
+    /// Number of steps after which the position was limited to the inside of the bearing, because
+    /// `dt_s` was too coarse or the input not finite.
     pub clamped: u32,
 }
 
 impl<T: Real> State<T> {
-    /// State at a given eccentricity ratio and attitude angle (rad).
+    /// Creates the state at a given eccentricity ratio and attitude angle (rad).
     pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
         let mut state = Self {
             xy: [T::ZERO; 2],
@@ -49,26 +51,26 @@ impl<T: Real> State<T> {
         state
     }
 
-    /// Sets the position of the journal exactly.
+    /// Sets the position of the journal and clears its rounding error.
     pub(super) fn put(&mut self, xy: [T; 2]) {
         self.xy = xy;
         self.e2 = xy[0] * xy[0] + xy[1] * xy[1];
         self.kept = [T::ZERO; 2];
     }
 
-    /// Eccentricity ratio.
+    /// Returns the eccentricity ratio.
     #[inline]
     pub fn eps(&self) -> T {
         self.e2.sqrt()
     }
 
-    /// Position `eps cos(phi)` and `eps sin(phi)`.
+    /// Returns the position `eps cos(phi)` and `eps sin(phi)`.
     #[inline]
     pub fn xy(&self) -> [T; 2] {
         self.xy
     }
 
-    /// Transition eccentricity under the present load.
+    /// Returns the transition eccentricity under the present load.
     #[inline]
     pub fn eps_tr(&self) -> T {
         self.loaded.eps_tr

@@ -1,4 +1,4 @@
-//! Stribeck curve: steady states of the law, (3.5) and (3.6).
+//! Stribeck curve of the journal law: its steady states, (3.5) and (3.6) of Cohn (1998).
 
 use super::Journal;
 use crate::error::{check, ParameterError};
@@ -6,7 +6,8 @@ use crate::law::{steady, Steady};
 use crate::real::Real;
 
 impl Journal<f64> {
-    /// Steady eccentricity, attitude and friction at a speed (m/s, signed), (3.5), (3.6).
+    /// Returns the steady eccentricity ratio, attitude angle and friction coefficient at a speed
+    /// (m/s, signed).
     ///
     /// # Errors
     /// The speed must be finite and not zero: at rest the friction is set-valued.

@@ -1,4 +1,4 @@
-//! Construction of the law.
+//! Construction of the journal law with inertia.
 
 use super::JournalFull;
 use crate::bearing::Bearing;
@@ -8,10 +8,11 @@ use crate::law::journal::{Journal, Parameters};
 use crate::real::Real;
 
 impl<T: Real> JournalFull<T> {
-    /// Checks the numbers and precomputes the constants.
+    /// Creates a journal law with inertia for a bearing, a load (N) and parameters, on the time
+    /// scale `clock`.
     ///
     /// # Errors
-    /// Names the first number that is not positive and finite.
+    /// Reports the first number that is not positive and finite.
     pub fn new(
         bearing: &Bearing,
         load_n: f64,

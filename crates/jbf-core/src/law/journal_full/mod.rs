@@ -1,22 +1,23 @@
-//! Full Harnoy-Friedland model of a journal bearing, including the inertia of the journal,
-//! equations (3.7), (3.8) and (3.14); a dot is d/d(tbar):
+//! Harnoy-Friedland model of a journal bearing with the inertia of the journal.
+//!
+//! Equations (3.7), (3.8) and (3.14) of Cohn (1998); a dot is d/d(tbar):
 //!
 //! ```text
 //! mb eps''     = Fb cos(phi) - W + J12 eps |Ub|/2 - J12 eps phi' - J22 eps' + mb eps phi'^2
 //! mb eps phi'' = -Fb sin(phi) + J11 eps |Ub|/2 - J11 eps phi' - J12 eps' - 2 mb eps' phi'
 //! ```
 //!
-//! These are Newton's law in polar coordinates: the two terms in `mb phi'` are those of an
-//! acceleration in a rotating frame. With `r = (eps cos(phi), eps sin(phi))` and the load along x
-//! they become
+//! These equations are Newton's second law in polar coordinates; the two terms in `mb phi'` are
+//! those of an acceleration in a rotating frame. With `r = (eps cos(phi), eps sin(phi))` and the
+//! load along x they become
 //!
 //! ```text
 //! mb r'' = Fb x - W r/eps - D (r' - (|Ub|/2) z cross r),   D = [ J22  J12 ]  in the frame of r,
 //!                                                              [ J12  J11 ]
 //! ```
 //!
-//! which is the form in [`motion`] (derived independently: the printed equations are right). The
-//! state is `(x, y)` and its rate, not eps and phi, for these reasons:
+//! which is the form in [`motion`] (an independent derivation confirmed the printed equations). The
+//! state is `(x, y)` and its time derivative, not eps and phi, for these reasons:
 //!
 //! - A step has no sine or cosine.
 //! - There is no singularity at the centre.
@@ -25,8 +26,8 @@
 //!   then has good pivots for every mass, down to zero. Here `s` is of the order of the inverse
 //!   step and `K` is the stiffness of film and asperities.
 //!
-//! The two rates relax to those of the reduced model within `mb/J11`, about ten microseconds. An
-//! explicit step would have to be shorter than that. The law's own stepper is [`Rodas3`].
+//! The velocity relaxes to that of the model without inertia within `mb/J11`, about ten
+//! microseconds, and an explicit step would have to be shorter. [`Law::advance`] uses [`Rodas3`].
 //!
 //! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
 //! chapter 3.
@@ -46,19 +47,19 @@ use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
 
-/// Fractions at which a step is split in three while the rates relax to those of the film: at a
-/// start and after a jump of the load.
+/// Fractions at which a step is divided into three while the velocity relaxes to that of the film:
+/// at a start and after a jump of the load.
 ///
-/// In one step of 2 ms the relaxation would cost an error of 2e-4 of the friction's peak, in three
-/// 6e-7.
+/// In one step of 2 ms, the error of the relaxation would be 2e-4 of the peak of the friction; in
+/// three steps, it is 6e-7.
 const CUTS: [f64; 2] = [0.05, 0.2];
 
-/// Relative change of the load above which it counts as a jump.
+/// Relative change of the load in one step from which it is treated as a jump.
 const JUMP: f64 = 0.01;
 
-/// The law with precomputed constants.
+/// Friction law of a journal bearing with the inertia of the journal, with precomputed constants.
 ///
-/// Its parameters are those of [`Journal`]; the mass is that of the bearing.
+/// The parameters are those of [`Journal`]; the mass is that of the bearing.
 #[derive(Clone, Copy, Debug)]
 pub struct JournalFull<T> {
     pub(crate) film: Journal<T>,
@@ -66,12 +67,12 @@ pub struct JournalFull<T> {
 }
 
 impl<T: Real> JournalFull<T> {
-    /// Film without the inertia of the journal.
+    /// Returns the law without the inertia of the journal.
     pub fn reduced(&self) -> &Journal<T> {
         &self.film
     }
 
-    /// Advances one step with any implicit stepper; [`Law::advance`] uses [`Rodas3`].
+    /// Advances the film by one step with any implicit method; [`Law::advance`] uses [`Rodas3`].
     #[inline]
     pub fn advance_with<S: StiffStepper>(
         &self,
@@ -136,7 +137,8 @@ impl<T: Real> JournalFull<T> {
         }
     }
 
-    /// Load number and transition eccentricity under a load, as [`Journal::under`].
+    /// Returns the load number and the transition eccentricity for a load (N), as
+    /// [`Journal::under`].
     pub fn under(&self, load_n: T) -> Loaded<T> {
         self.film.under(load_n)
     }
@@ -150,7 +152,8 @@ impl<T: Real> Law<T> for JournalFull<T> {
         State::at(loaded.eps_tr, T::of(START_PHI_RAD), loaded)
     }
 
-    /// The implicit stepper is stable at any step; accuracy for the film requires this one.
+    /// Longest step with which the film is accurate, s; the implicit method is stable with any
+    /// step.
     fn longest_step_s(&self, top_speed_m_s: f64) -> f64 {
         self.film.longest_step_s(top_speed_m_s)
     }
@@ -165,7 +168,7 @@ impl<T: Real> Law<T> for JournalFull<T> {
         self.film.load_share(load_n)
     }
 
-    /// The mass number is proportional to U_tr.
+    /// Returns the law with scaled parameters; the mass number is proportional to U_tr.
     #[inline]
     fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
         Some(Self {

@@ -1,6 +1,6 @@
-//! Equations of motion of the journal in its film, with their derivatives.
+//! Equations of motion of the journal in its film, with inertia and with their derivatives.
 //!
-//! They are a system of four states, `(x, y)` and its rate, driven by `|Ub|`.
+//! The system has four states, `(x, y)` and its time derivative, and the input `|Ub|`.
 
 use super::JournalFull;
 use crate::film::FilmIntegrals;
@@ -10,24 +10,25 @@ use crate::real::Real;
 use crate::stepper::{Linear, SecondOrder, StiffSystem, System};
 use core::f64::consts::FRAC_PI_2;
 
-/// The journal in its film.
+/// Equations of motion of the journal in its film, with inertia.
 #[derive(Clone, Copy, Debug)]
 pub struct FullFilm<T> {
     inverse_mass: T,
     load_number: T,
     eps_tr: T,
     k0: T,
-    /// Values of `x` and `y` at the start of the step. The state is the displacement from there,
-    /// which single precision resolves far better than the position.
+    /// Values of `x` and `y` at the start of the step.
+    ///
+    /// The state is the displacement from this position, because single precision resolves it much
+    /// better than the position.
     from: [T; 2],
-    /// If true, limits every stage to the inside of the bearing, and removes asperity contact below
+    /// True if every stage is limited to the inside of the bearing, and asperity contact ends below
     /// eps_tr.
     held: bool,
 }
 
 impl<T: Real> FullFilm<T> {
-    /// Creates the system of the law itself, for a loop: any stage of any step gives finite
-    /// numbers.
+    /// Creates the equations of the law for a control loop: every stage of a step is finite.
     pub(crate) fn held(law: &JournalFull<T>, loaded: &Loaded<T>, from: [T; 2]) -> Self {
         Self {
             inverse_mass: law.inverse_mass_number,
@@ -39,10 +40,10 @@ impl<T: Real> FullFilm<T> {
         }
     }
 
-    /// Creates the system with or without asperity contact, at any eccentricity.
+    /// Creates equations with or without asperity contact at any eccentricity ratio.
     ///
-    /// It is smooth where the law has the kink of `W`. Outside the bearing its values are not
-    /// finite.
+    /// These equations are smooth at eps_tr, where `W` of the law has a kink. The values outside
+    /// the bearing are not finite.
     pub(crate) fn smooth(law: &JournalFull<T>, loaded: &Loaded<T>, touching: bool) -> Self {
         Self {
             k0: if touching { law.film.k0 } else { T::ZERO },
@@ -104,7 +105,7 @@ impl<T: Real> System<T, 4> for FullFilm<T> {
 impl<T: Real> StiffSystem<T, 4> for FullFilm<T> {
     type Solver = SecondOrder<T>;
 
-    /// Computes [`System::slope`] and the derivatives of each force with respect to eps and phi.
+    /// Computes [`System::slope`], and the derivatives of each force with respect to eps and phi.
     ///
     /// For phi the velocity is held constant: `radial' = tangential velocity`, `slip' = -radial`.
     #[inline]

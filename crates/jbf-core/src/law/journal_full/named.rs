@@ -1,4 +1,4 @@
-//! The full model in the catalogue of laws.
+//! Description of the journal law with inertia in the catalogue.
 
 use super::JournalFull;
 use crate::bearing::Bearing;
@@ -30,7 +30,8 @@ impl<T: Real> Named<T> for JournalFull<T> {
 }
 
 impl SteadyCurve for JournalFull<f64> {
-    /// Inertia has no influence on a steady state: the curve is that of the reduced model.
+    /// Returns the steady friction of the law without inertia, because inertia has no influence on
+    /// a steady state, N.
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         self.film.steady_n(velocity_m_s)
     }

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn checks_accept_and_refuse_values_at_the_ends_of_their_ranges() {
+    fn range_checks_accept_closed_ends_and_refuse_open_ends() {
         assert!(positive("x", 0.0).is_err() && positive("x", f64::MIN_POSITIVE).is_ok());
         assert!(positive("x", f64::INFINITY).is_err() && positive("x", f64::NAN).is_err());
         assert!(not_negative("x", 0.0).is_ok() && not_negative("x", -1e-300).is_err());

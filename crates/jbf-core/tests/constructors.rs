@@ -1,4 +1,5 @@
-//! Constructors: the original form (3.15), and errors that name parameter, value and rule.
+//! Tests of constructors: the original form (3.15) of the asperity stiffness, and errors with
+//! parameter, value and rule.
 
 mod common;
 
@@ -10,7 +11,7 @@ fn build(bearing: Bearing, load_n: f64, p: Parameters<f64>) -> Result<(), Error>
     Journal::new(&bearing, load_n, &p, Clock::Journal).map(|_| ())
 }
 
-/// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` and `K0 (eps - eps_tr)` are the same line.
+/// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` equals `K0 (eps - eps_tr)`.
 #[test]
 fn stiffness_converted_from_the_original_form_gives_the_same_line() {
     let eps_tr = 0.9723504945734831;
@@ -80,7 +81,7 @@ fn friction_of_a_law_with_a_tiny_load_is_finite_or_the_load_is_refused() {
     }
 }
 
-/// The load is representable, but the load number that follows from it is not.
+/// A representable load is refused if its load number underflows.
 #[test]
 fn load_whose_load_number_underflows_is_refused_by_name() {
     for load_n in [1e-39, 1e-310] {

@@ -1,7 +1,7 @@
-//! For any input the output of a loop stays a finite voltage within the limit.
+//! Tests that the output of a control loop stays a finite voltage within the limit for any input.
 //!
-//! The loop reports the fault, learns nothing while it lasts, falls back to its control law, and
-//! recovers.
+//! The loop reports a fault, learns nothing while it lasts, uses its control law without
+//! compensation, and recovers.
 
 #[macro_use]
 mod common;
@@ -14,7 +14,7 @@ use jbf_core::controller::{Controller, Status};
 use jbf_core::reference::Target;
 use jbf_core::Real;
 
-/// After a step of 10 rad the position settles there with every compensator.
+/// After a step of the reference by 10 rad, the position settles with every compensator.
 #[test]
 fn position_settles_after_a_step_of_ten_radians() {
     with_each_compensator!(f64, Control::Position, |name, controller| {
@@ -33,7 +33,7 @@ fn position_settles_after_a_step_of_ten_radians() {
     });
 }
 
-/// When the load doubles in motion and then falls to half, the speed recovers.
+/// The speed recovers after the load doubles in motion and then falls to half.
 #[test]
 fn speed_recovers_after_the_load_doubles_and_halves() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -62,10 +62,11 @@ fn speed_recovers_after_the_load_doubles_and_halves() {
     });
 }
 
-/// A counter that does not change while the voltage moves the shaft is reported within the
-/// patience.
+/// A counter that does not change while the voltage moves the shaft is reported within the time
+/// limit.
 ///
-/// Nothing is learned meanwhile and the control law acts alone; the loop recovers with the counter.
+/// Until it changes, nothing is learned and the control law acts alone. The loop resumes
+/// compensation with the counter.
 #[test]
 fn frozen_encoder_is_reported_and_the_control_law_acts_alone() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -104,7 +105,7 @@ fn frozen_encoder_is_reported_and_the_control_law_acts_alone() {
     });
 }
 
-/// Nothing is learned in steps without a valid measurement.
+/// Learned values do not change in steps without a valid measurement.
 #[test]
 fn learned_values_are_kept_while_the_encoder_is_frozen() {
     let mut bench = Bench::new(
@@ -123,7 +124,7 @@ fn learned_values_are_kept_while_the_encoder_is_frozen() {
     assert_eq!(bench.state.compensator.learned, kept);
 }
 
-/// If a counter jumps, that step is rejected and the loop continues from its previous position.
+/// The step of a counter jump is rejected, and the loop continues from its previous position.
 #[test]
 fn jump_of_the_encoder_is_rejected_and_the_loop_continues() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -143,7 +144,7 @@ fn jump_of_the_encoder_is_rejected_and_the_loop_continues() {
     });
 }
 
-/// If a reference is not finite, the last valid one is used.
+/// The last valid reference is used if the reference is not finite.
 #[test]
 fn last_valid_reference_is_used_if_the_reference_is_not_finite() {
     with_each_compensator!(f32, Control::Position, |name, controller| {
@@ -165,9 +166,9 @@ fn last_valid_reference_is_used_if_the_reference_is_not_finite() {
     });
 }
 
-/// A reference beyond the drive's ability is reported as saturated and nothing is learned.
+/// A reference beyond the ability of the drive is reported as saturated, and nothing is learned.
 ///
-/// Afterwards the loop follows again.
+/// The loop follows its reference again afterwards.
 #[test]
 fn saturation_is_reported_and_the_loop_follows_again_afterwards() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -245,7 +246,8 @@ fn loop_stays_finite_for_arbitrary_inputs_in_single_precision() {
     with_each_compensator!(f32, Control::Velocity, |name, c| { torture(name, &c) });
 }
 
-/// Learned values survive a power cycle; values not finite or beyond the limits do no harm.
+/// Learned values can be stored and resumed; values that are not finite are ignored, and others
+/// limited.
 #[test]
 fn learned_values_are_resumed_and_invalid_ones_replaced_or_limited() {
     let control = Control::Velocity;
@@ -276,7 +278,7 @@ fn learned_values_are_resumed_and_invalid_ones_replaced_or_limited() {
     assert!(held.k0 <= 1e7 && held.gamma > 0.0);
 }
 
-/// Single precision gives the same result as double precision.
+/// The tracking error in single precision is within 10 % of that in double precision.
 #[test]
 fn tracking_error_in_single_precision_is_within_10_percent_of_double() {
     fn rms<T: Real>() -> f64 {

@@ -1,6 +1,7 @@
-//! Compensation reduces the error, for the film and for missing effects.
+//! Tests that compensation reduces the tracking error, with a correct friction model and with a
+//! model that lacks an effect.
 //!
-//! 1e8 steps change nothing.
+//! The error does not change over 1e8 steps.
 
 #[macro_use]
 mod common;
@@ -53,7 +54,7 @@ fn observed_compensator_halves_the_error_of_the_other_schemes() {
     }
 }
 
-/// A model with the effect of the plant is better than a model without it.
+/// A compensator whose model has the effect of the plant tracks better than one without the effect.
 #[test]
 fn compensator_with_the_effect_of_the_plant_has_a_smaller_error() {
     let control = Control::Velocity;
@@ -76,7 +77,8 @@ fn compensator_with_the_effect_of_the_plant_has_a_smaller_error() {
     }
 }
 
-/// The observer's error decays by its poles: two at -60/s, the plant's own at -135/s.
+/// The error of the observer decays with its poles: two at -60 1/s, and that of the plant at -135
+/// 1/s.
 #[test]
 fn observer_error_decays_at_the_rate_of_the_requested_poles() {
     let control = Control::Velocity;
@@ -129,7 +131,7 @@ fn endless<T: Real, C: Compensator<T>>(name: &str, control: Control, c: Controll
     );
 }
 
-/// 300,000 steps in single precision.
+/// The tracking error does not change over 300,000 steps in single precision.
 #[test]
 fn tracking_error_does_not_change_over_300_000_steps() {
     for control in [Control::Velocity, Control::Position] {
@@ -139,7 +141,8 @@ fn tracking_error_does_not_change_over_300_000_steps() {
     }
 }
 
-/// 1e8 steps, 55 hours of the loop, without drift or growth: `cargo test --release -- --ignored`.
+/// The tracking error does not change over 1e8 steps, 55 hours of the loop: `cargo test --release
+/// -- --ignored`.
 #[test]
 #[ignore = "minutes: make test-extended"]
 fn tracking_error_does_not_change_over_a_hundred_million_steps() {

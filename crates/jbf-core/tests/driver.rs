@@ -1,6 +1,6 @@
-//! The driver compared with trajectories of an independent implementation.
+//! Tests of trajectories against those of an independent implementation.
 //!
-//! It is tested at every tolerance and for every kind of motion.
+//! Every tolerance and every kind of motion is tested.
 
 mod common;
 
@@ -19,7 +19,8 @@ fn full(clock: Clock) -> JournalFull<f64> {
     JournalFull::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
 }
 
-/// A reference run; its rows are time, speed, eps, phi, f.
+/// Reference trajectory with its law and motion; rows contain time, speed, eps, phi and friction
+/// coefficient.
 struct Run {
     omega_rad_s: f64,
     clock: Clock,
@@ -58,7 +59,7 @@ fn full_runs() -> Vec<Run> {
     ]
 }
 
-/// Largest errors of f, eps and phi over the rows.
+/// Largest errors of friction coefficient, eps and phi over the rows of a reference trajectory.
 fn errors<F: Film<f64, N>, const N: usize>(film: &F, run: &Run, tolerance: f64) -> [f64; 3] {
     let motion = Sine::new(AMPLITUDE_M_S, run.omega_rad_s).expect("valid");
     let times: Vec<f64> = run.rows.iter().map(|row| row[0]).collect();
@@ -105,10 +106,10 @@ fn trajectory_of_the_full_model_agrees_with_the_reference_to_1e_7() {
     }
 }
 
-/// Every tolerance from 1e-3 to 1e-12 succeeds.
+/// Asserts that every tolerance from 1e-3 to 1e-12 succeeds.
 ///
-/// The error stays below a few tolerances and decreases until it reaches the digits of the
-/// reference.
+/// The error must be below a few tolerances, and decrease until it reaches the accuracy `digits` of
+/// the reference.
 fn falls_with_the_tolerance<F: Film<f64, N>, const N: usize>(film: &F, run: &Run, digits: f64) {
     let mut best = f64::INFINITY;
     for tenth in 6..=24 {
@@ -137,9 +138,8 @@ fn trajectory_error_decreases_with_the_tolerance() {
     }
 }
 
-/// Friction is the same along three forms of one motion.
-///
-/// The forms are a formula with its kinks, a function without known reversals, and a dense record.
+/// Friction is the same for a motion given as a formula with its kinks, as a function without known
+/// reversals, and as a dense record.
 #[test]
 fn friction_is_the_same_for_three_forms_of_one_motion() {
     let film = law::<f64>(Clock::Journal);
@@ -173,7 +173,7 @@ fn friction_is_the_same_for_three_forms_of_one_motion() {
     }
 }
 
-/// A motion behind a reference.
+/// Motion behind a reference, because `Excitation` is not implemented for references.
 struct Dyn<'a>(&'a dyn Excitation);
 
 impl Excitation for Dyn<'_> {
@@ -188,7 +188,7 @@ impl Excitation for Dyn<'_> {
     }
 }
 
-/// A record that rests, starts, rests and reverses.
+/// The trajectory of a record with rests and reversals agrees with steps of constant length.
 #[test]
 fn trajectory_with_rests_agrees_with_steps_of_constant_length() {
     let film = full(Clock::Journal);
@@ -221,7 +221,8 @@ fn trajectory_with_rests_agrees_with_steps_of_constant_length() {
     }
 }
 
-/// Derivatives pass through the driver: its steps depend on the values alone.
+/// Derivatives of a trajectory match central differences, because its steps depend on the values
+/// alone.
 #[test]
 fn trajectory_derivatives_match_central_differences() {
     let motion = Sine::new(AMPLITUDE_M_S, 1.0).expect("valid");
@@ -265,7 +266,7 @@ fn trajectory_derivatives_match_central_differences() {
     }
 }
 
-/// With laws far from the thesis's and any tolerance, every run ends with finite numbers.
+/// Every trajectory ends with finite numbers, also for laws far from that of Cohn (1998).
 #[test]
 fn trajectory_of_any_law_at_any_tolerance_ends_with_finite_numbers() {
     let mut random = Random::new(21);

@@ -1,8 +1,9 @@
-//! A billion steps of the loop, 23 days, in single precision: late periods equal early ones.
+//! Tests that a control loop in single precision does not change over a billion steps (23 days):
+//! late periods equal early ones.
 //!
-//! The regular run has a million steps. One period of the target is a whole number of steps and
-//! returns or advances the shaft by a constant angle, so that periods can be compared. The mean
-//! reveals a drifting error, the RMS an oscillation or a loss of learned values.
+//! The default test has a million steps. A period of the target is a whole number of steps and
+//! moves the shaft by a constant angle, so that periods can be compared. A change of the mean error
+//! shows drift; a change of the RMS shows an oscillation or a loss of learned values.
 
 mod common;
 
@@ -11,14 +12,16 @@ use jbf_core::compensator::Compensator;
 use jbf_core::controller::Controller;
 use std::time::Instant;
 
-/// Steps of a period, and number of periods that are compared.
+/// Number of steps of a period of the target.
+///
+/// `LAPS` is the number of periods that are compared.
 const LAP: u64 = 1000;
 const LAPS: u64 = 50;
 
-/// Periods until learning has settled.
+/// Number of periods until learning has settled.
 const SETTLED: u64 = 200;
 
-/// Mean and RMS of an error.
+/// Mean and RMS of the tracking error.
 #[derive(Clone, Copy, Debug, Default)]
 struct Errors {
     sum: f64,
@@ -40,7 +43,8 @@ impl Errors {
     }
 }
 
-/// Runs `steps` steps and returns the true errors of the settled periods and of the last ones.
+/// Runs a loop for `steps` steps and returns the tracking errors of periods after learning has
+/// settled and of the last periods.
 fn run<C: Compensator<f32>>(
     control: Control,
     controller: Controller<f32, C>,
@@ -128,8 +132,10 @@ fn loop_state_does_not_drift_over_a_million_steps() {
     );
 }
 
-/// `cargo test --release -p jbf-core --test endless -- --ignored --nocapture`; `JBF_STEPS` sets a
-/// smaller number of steps.
+/// The loop state does not drift over a billion steps.
+///
+/// `cargo test --release -p jbf-core --test endless -- --ignored --nocapture`; the variable
+/// `JBF_STEPS` sets a smaller number of steps.
 #[test]
 #[ignore = "forty minutes: make test-extended"]
 fn loop_state_does_not_drift_over_a_billion_steps() {

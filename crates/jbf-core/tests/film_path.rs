@@ -1,4 +1,5 @@
-//! A film on the path of its own parameters: the chain gives the same bits.
+//! Tests that a chain on the stored path of a film has the same readings, bit for bit, as one that
+//! integrates the film.
 
 mod common;
 
@@ -13,7 +14,7 @@ use std::cell::RefCell;
 
 const MAX_STEP_S: f64 = 0.02;
 
-/// The law of Table 4.2; `lifted` may attach derivatives to f_m, U_tr and K0.
+/// Journal law of Table 4.2 (Cohn 1998); `lifted` may attach derivatives to f_m, U_tr and K0.
 fn law<T: Real>(lifted: impl Fn(f64, usize) -> T) -> Journal<T> {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {
@@ -45,7 +46,8 @@ fn with<T: Real, L: Law<T>>(law: L, named: &[(&str, &[f64])]) -> Chain<T, L, Eff
     Chain::round(law, effects, Some(&Bearing::THESIS))
 }
 
-/// Motion in both directions with uneven samples, some so far apart that inner steps are needed.
+/// Columns of a motion in both directions with uneven sampling intervals, some so long that inner
+/// steps are needed.
 struct Columns([Vec<f64>; 5]);
 
 impl Columns {
@@ -82,13 +84,15 @@ impl Columns {
     }
 }
 
-/// The film's states along the steps of a record.
+/// States of the film along the steps of a record, with derivatives with respect to the parameters
+/// `by`.
 fn path<const N: usize>(record: &Record<'_>, by: [usize; 2]) -> Vec<Place> {
     let inner_s = inner_step_s(&chain(law(|v, _| v)), record, MAX_STEP_S);
     path_and_ends::<N>(record, by, inner_s).0
 }
 
-/// As `path`, and for each sample except the first the number of the last step before it.
+/// States of the film as from [`path`], and for each sample except the first the index of the last
+/// step before it.
 fn path_and_ends<const N: usize>(
     record: &Record<'_>,
     by: [usize; 2],
@@ -159,7 +163,7 @@ fn readings_on_a_stored_film_path_have_the_same_bits_and_derivatives() {
         .any(|f| f.slope[1] != 0.0 && f.slope[2] != 0.0));
 }
 
-/// For effects without memory the steps between two samples do not change a reading.
+/// The last step before each sample determines the reading if no effect has memory.
 #[test]
 fn last_step_before_each_sample_suffices_for_effects_without_memory() {
     let columns = Columns::new();
@@ -195,13 +199,13 @@ fn last_step_before_each_sample_suffices_for_effects_without_memory() {
     assert!(!remembers("coulomb_drag", &[1.0]) && !remembers("sensor_offset", &[0.1]));
 }
 
-/// U_tr or K0, by its index in the parameters.
+/// Value of the parameter `number` of the law of Table 4.2: U_tr or K0.
 fn plain_parameter(number: usize) -> f64 {
     let p = Parameters::TABLE_4_2;
     [p.f_m, p.u_tr_m_s, p.k0, p.gamma][number]
 }
 
-/// Beyond the end of the path the film steps by itself, from the last eccentricity of the path.
+/// After the end of a path, the film is integrated from the last eccentricity of the path.
 #[test]
 fn readings_beyond_the_end_of_a_film_path_are_finite() {
     let columns = Columns::new();

@@ -1,7 +1,9 @@
-//! An encoder that freezes for three seconds and recovers, with models of any viscous friction.
+//! Tests of control loops whose encoder freezes for three seconds and recovers, for friction models
+//! with any viscous friction.
 //!
-//! The speed of the loop stays within the ability of the drive. A second later the loop is as
-//! accurate as before; a position loop once it has returned from where it drifted.
+//! The speed stays within the ability of the drive. One second after the recovery, the tracking
+//! error is that before the fault. A position loop first returns from the angle to which it
+//! drifted.
 
 mod common;
 
@@ -17,16 +19,19 @@ use jbf_core::plant::Plant;
 use jbf_core::reference::Target;
 use jbf_core::{Chain, Clock, Real};
 
-/// Steps before the encoder freezes, steps while it is frozen, and steps that are compared (one
-/// period of the target).
+/// Number of steps before the encoder freezes.
+///
+/// `FROZEN` is the number of steps while it is frozen. `SEEN` is the number of steps in which errors
+/// are compared, one period of the target.
 const RUN: u32 = 2000;
 const FROZEN: u32 = 1500;
 const SEEN: u32 = 1000;
 
-/// Twice the speed that the drive's largest voltage holds without friction, rad/s.
+/// Twice the speed that the largest voltage of the drive sustains without friction, rad/s.
 const FASTEST_RAD_S: f64 = 68.0;
 
-/// Error allowed for values learned while frozen, as a share of the target's amplitude.
+/// Permitted tracking error due to values learned during the fault, relative to the amplitude of
+/// the target.
 const ALLOWED: f64 = 0.15;
 
 const NO_EFFECTS: &[(&str, &[f64])] = &[];
@@ -36,10 +41,10 @@ fn law<T: Real, L: Named<T>>(values: &[f64]) -> L {
     L::build(None, None, &lifted, Clock::Journal).expect("in the bounds")
 }
 
-/// Runs the loop with a model on a plant with friction and returns its errors.
+/// Runs a loop with a friction model on a shaft with friction, and returns its tracking errors.
 ///
-/// The errors are the RMS in the loop's own signal, relative to the target's amplitude. They are
-/// taken over the last period before the encoder freezes and over one after it recovers.
+/// They are the RMS of the error measured by the loop, relative to the amplitude of the target,
+/// over the last period before the fault and over one period after it.
 fn errors<T: Real, L: Law<f64>>(
     told: &str,
     control: Control,
@@ -90,7 +95,7 @@ fn errors<T: Real, L: Law<f64>>(
     squares.map(|square| square.sqrt() / size)
 }
 
-/// Tests a law with viscous friction and effects, as a whole chain, and bare without effects.
+/// Asserts that a loop recovers, with a friction model with effects and with one without effects.
 fn comes_back<T: Real, A: Named<T>, B: Named<f64>>(values: &[f64], effects: &[(&str, &[f64])]) {
     for (control, named) in [
         (Control::Position, "position"),
@@ -131,9 +136,8 @@ fn loop_recovers_from_a_frozen_encoder_with_any_viscous_friction_in_single_preci
     }
 }
 
-/// Steep viscous friction due to effects.
-///
-/// A weight that hides it, an asymmetry that doubles it, a quadratic drag, and a bristle.
+/// A loop recovers with steep viscous friction from effects: a weight that conceals it, an
+/// asymmetry that doubles it, a quadratic drag, and a bristle.
 #[test]
 fn loop_recovers_from_a_frozen_encoder_with_steep_friction_from_effects() {
     let values = [8.0, 10.0, 1e4];

@@ -1,4 +1,4 @@
-//! The load may change during a run: the law then equals the one built with the new load.
+//! Tests that a law after a change of the load equals one created with the new load.
 
 mod common;
 
@@ -35,9 +35,9 @@ fn friction_after_a_change_of_load_is_that_of_the_new_load() {
     }
 }
 
-/// A lifted bearing is treated as one with a hundredth of its load.
+/// A bearing without load has the friction of one with a hundredth of its load.
 ///
-/// The film reaches the steady state of that load for any load before, and all numbers stay finite.
+/// The film reaches the steady state of that load from any load, and all numbers are finite.
 #[test]
 fn lifted_bearing_has_the_friction_of_a_hundredth_of_its_load() {
     let law = common::law::<f64>(Clock::Journal);

@@ -1,4 +1,4 @@
-//! The law's longest step is accurate for any parameters.
+//! Tests that the longest step of the journal law is accurate for any parameters.
 
 mod common;
 
@@ -7,10 +7,10 @@ use jbf_core::law::journal::{Journal, Parameters, State};
 use jbf_core::law::Law;
 use jbf_core::{Bearing, Clock};
 
-/// A film displaced from its steady state by a tenth of its gap and more.
+/// The return of a film to its steady state in steps of this length equals that in steps a quarter
+/// as long, within a thousandth of the gap.
 ///
-/// Its return in steps of that length equals that in steps a quarter as long, within a thousandth
-/// of the gap.
+/// The film is displaced from its steady state by a tenth of its gap and more.
 #[test]
 fn longest_step_agrees_with_shorter_steps_within_a_thousandth_of_the_gap() {
     let mut random = Random::new(11);
@@ -52,7 +52,8 @@ fn longest_step_agrees_with_shorter_steps_within_a_thousandth_of_the_gap() {
     }
 }
 
-/// The step is not too short: for the thesis's bearing several steps of its 2 ms loop.
+/// The longest step is not too short: it is several time steps of the 2 ms loop of Cohn (1998) for
+/// his bearing.
 #[test]
 fn longest_step_is_several_times_the_loop_step() {
     for clock in [Clock::Journal, Clock::Thesis] {

@@ -1,4 +1,5 @@
-//! Memory of a chain: only what its law, the motion and its effects need.
+//! Tests that the state of a chain takes only the memory that its law, the motion and its effects
+//! need.
 
 use jbf_core::chain::State;
 use jbf_core::effect::coulomb_drag::CoulombDrag;
@@ -12,7 +13,7 @@ use std::mem::size_of;
 
 type Changes<T, L, E> = State<T, <L as Law<T>>::State, E>;
 
-/// Bytes of state of a chain with Coulomb's law.
+/// Size of the state of a chain with Coulomb's law, bytes.
 fn state<T: Real, E: EffectSet<T>>() -> usize {
     size_of::<Changes<T, Coulomb<T>, E>>()
 }

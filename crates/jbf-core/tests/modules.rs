@@ -1,10 +1,10 @@
-//! The modules of the crate import each other without cycles.
+//! Tests that the modules of the crate import each other without cycles.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every file below a module.
+/// Paths of all files of a module.
 fn files(at: &Path) -> Vec<PathBuf> {
     if at.is_file() {
         return vec![at.to_path_buf()];
@@ -15,9 +15,10 @@ fn files(at: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Modules and their imports: a file or a folder in `src`, and each `crate::module` in it.
+/// Modules of the crate with the modules that each imports; a module is a file or a folder in
+/// `src`.
 ///
-/// Comments and the module's own tests are excluded. A top-level export of `lib.rs` (`crate::Dual`)
+/// Comments and the tests in a module are excluded. A top-level export of `lib.rs` (`crate::Dual`)
 /// belongs to its module.
 fn imports() -> BTreeMap<String, BTreeSet<String>> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");

@@ -1,4 +1,5 @@
-//! Encoder, velocity observer, Coulomb observer and reference compared with the thesis's forms.
+//! Tests of encoder, velocity observer, Coulomb observer and reference against the equations of
+//! Cohn (1998).
 
 mod common;
 
@@ -45,7 +46,7 @@ fn top_speed_at_which_a_counter_overflow_is_ambiguous_is_refused() {
     assert_eq!(error.name(), "top_speed_rad_s");
 }
 
-/// Single precision keeps the last count after a billion counts.
+/// Single precision resolves a single count after a billion counts.
 #[test]
 fn angle_of_a_billion_counts_is_exact() {
     let encoder = Encoder::<f64>::new(1.0, 32, 1e9, DT_S).unwrap();
@@ -59,7 +60,7 @@ fn angle_of_a_billion_counts_is_exact() {
     assert_eq!(encoder.angle_rad(&state), 1_000_001_000.0);
 }
 
-/// The observer equals the thesis's step, `v = k x + z; z += dt (-(a + k) v + b u)`.
+/// The velocity observer equals the step in Cohn (1998), `v = k x + z; z += dt (-(a + k) v + b u)`.
 #[test]
 fn velocity_observer_equals_that_of_the_thesis() {
     for (a, b) in [(0.0, 0.0), (135.0, 457.0)] {
@@ -78,7 +79,7 @@ fn velocity_observer_equals_that_of_the_thesis() {
     }
 }
 
-/// With constant friction F the level converges to F at the rate k_F b (p = 1).
+/// With a constant friction F, the estimated level converges to F at the rate k_F b (p = 1).
 #[test]
 fn coulomb_observer_converges_at_its_rate() {
     let (gain, b, friction) = (0.01, 457.0, 0.7);
@@ -102,9 +103,11 @@ fn coulomb_observer_converges_at_its_rate() {
     }
 }
 
-/// phi is continuous, its derivative is correct, and the gain is bounded.
+/// The function phi is continuous, its derivative is correct, and the gain of the observer is
+/// bounded.
 ///
-/// This holds for exponents on both sides of 1 (guard at v = 0 for p < 1, at speed for p > 1).
+/// Exponents above and below 1 are tested: phi becomes its tangent near v = 0 for p < 1, and at
+/// high speed for p > 1.
 #[test]
 fn guarded_nonlinearity_has_bounded_gain_and_correct_derivative() {
     let (gain, b) = (0.01, 457.0);
@@ -137,9 +140,10 @@ fn guarded_nonlinearity_has_bounded_gain_and_correct_derivative() {
     }
 }
 
-/// An exponent just below one has a guard beyond every speed at which the gain is too large.
+/// A gain is refused if phi would be its tangent at every speed of a shaft, as for an exponent just
+/// below one.
 ///
-/// It used to overflow, so that phi was not finite.
+/// The tangent used to overflow, so that phi was not finite.
 #[test]
 fn observer_gain_whose_guard_exceeds_every_speed_is_refused() {
     let error = CoulombObserver::<f32>::new(14.4, 0.991, 5.0, 0.3, 0.025).unwrap_err();
@@ -158,10 +162,10 @@ fn learned_level_is_limited() {
     assert!((observer.level_v(&state, &observer.power(1.0)) - 2.0).abs() < 1e-5);
 }
 
-/// Initial phases of Appendices D and E.
+/// References start with the phases of Appendices D and E of Cohn (1998).
 ///
-/// A sine about zero starts at zero, any other at its minimum; a triangle starts low, a square
-/// high.
+/// A sine that crosses zero starts at zero, any other at its minimum. A triangle wave starts at its
+/// minimum, and a square wave at its maximum.
 #[test]
 fn references_start_with_the_phases_of_the_thesis() {
     let at = |wave, low, high| Reference::new(wave, low, high, 0.25).unwrap().at(0.0);

@@ -1,12 +1,14 @@
-//! Orders of convergence of the implicit steppers; for Euler and Runge-Kutta see `reference.rs`.
+//! Tests of the orders of convergence of the implicit methods; see `reference.rs` for the explicit
+//! ones.
 //!
-//! The motion is smooth: one direction, always in mixed lubrication, so that neither |U| nor the
-//! asperity load has a kink.
+//! The motion is smooth: in one direction and always in mixed lubrication, so that neither |U| nor
+//! the asperity load has a kink.
 //!
-//! Three values of the input define a parabola along a step. Its error is of third order and odd
-//! about the middle, which leaves an error of fourth order at the end. A method of order five
-//! therefore keeps its order only under a steady input. The driver evaluates the excitation itself
-//! and always keeps it.
+//! A method interpolates the input by a parabola through three values in a step. The interpolation
+//! error is of third order and odd about the middle, which results in an error of fourth order at
+//! the end of the step. A method of order five therefore keeps its order only with a constant
+//! input. The integration of trajectories evaluates the excitation itself and always keeps the
+//! order.
 
 mod common;
 
@@ -16,7 +18,7 @@ use jbf_core::law::journal_full::{self, JournalFull};
 use jbf_core::stepper::{Rodas3, Rodas5P, StiffStepper};
 use jbf_core::{Bearing, Clock};
 
-/// State of the reduced film after some time of `0.03 + swing sin(4 t)` m/s.
+/// State of the film without inertia after a motion of `0.03 + swing sin(4 t)` m/s.
 fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
     let law = law::<f64>(Clock::Journal);
     // Away from its steady state, so that it also moves at a steady speed.
@@ -29,7 +31,7 @@ fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
     state.xy()
 }
 
-/// State of the full model after some time of the same motion.
+/// State of the film with inertia after a motion of `0.03 + swing sin(4 t)` m/s.
 fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
     let law = JournalFull::<f64>::new(&Bearing::THESIS, LOAD_N, &table_4_2(), Clock::Journal)
         .expect("valid");
@@ -78,10 +80,10 @@ fn steppers_have_their_order_on_the_reduced_model() {
     }
 }
 
-/// Steps a thousand times longer than the fast time constants.
+/// Rodas3 keeps its order of three in steps a thousand times longer than the fast time constants;
+/// the order of Rodas5P is one below its nominal five.
 ///
-/// Rodas3 meets the order conditions of differential-algebraic systems and keeps its order. The
-/// measured order of Rodas5P is one below its nominal five.
+/// Rodas3 meets the order conditions of differential-algebraic systems.
 #[test]
 fn steppers_have_their_order_on_the_stiff_full_model() {
     for (swing, fifth, longest_s) in [(0.0, 4.0, 0.08), (0.01, 4.0, 0.04)] {

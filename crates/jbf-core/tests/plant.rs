@@ -1,4 +1,4 @@
-//! The bench's plant compared with closed forms: free motion, stopping, sticking, symmetry.
+//! Tests of the simulated shaft against closed forms: free motion, stopping, sticking, symmetry.
 
 mod common;
 
@@ -23,13 +23,13 @@ fn chain<L>(law: L) -> Chain<f64, L> {
     }
 }
 
-/// A constant friction of `volts` on the thesis's drive.
+/// Shaft with the drive of Cohn (1998) and a constant friction of `volts`.
 fn dry(volts: f64) -> Plant<f64, ConstantLaw> {
     let coefficient = volts / (LOAD_N * DRIVE.volts_per_n);
     Plant::new(chain(ConstantLaw(coefficient)), DRIVE, H).unwrap()
 }
 
-/// Without friction a step is the exact solution for a constant input.
+/// A step without friction is the exact solution for a constant input.
 #[test]
 fn plant_without_friction_follows_the_exact_solution() {
     let plant = dry(0.0);
@@ -42,7 +42,8 @@ fn plant_without_friction_follows_the_exact_solution() {
     }
 }
 
-/// With a constant level L the speed V falls to zero at t = ln(1 + aV/(bL))/a, and stays zero.
+/// With a constant friction level L, the speed V falls to zero at t = ln(1 + aV/(bL))/a and stays
+/// zero.
 #[test]
 fn dry_friction_stops_the_plant_at_the_exact_time() {
     let (a, b, level) = (135.0, 457.0, 0.8);
@@ -71,7 +72,8 @@ fn dry_friction_stops_the_plant_at_the_exact_time() {
     }
 }
 
-/// During an hour at nine tenths of the level there is no motion, and friction equals the input.
+/// With an input of nine tenths of the friction level, the shaft does not move for an hour, and
+/// friction equals the input.
 #[test]
 fn plant_below_the_breakaway_level_stays_at_rest_for_an_hour() {
     let plant = plant(&[]);
@@ -92,7 +94,7 @@ fn plant_below_the_breakaway_level_stays_at_rest_for_an_hour() {
     assert!(state.speed_rad_s > 0.0);
 }
 
-/// `v' = -a v + b (u - F)` holds in every step for the reported friction.
+/// The reported friction F satisfies `v' = -a v + b (u - F)` in every step.
 #[test]
 fn reported_friction_satisfies_the_equation_of_motion() {
     let plant = plant(&[("stribeck_excess", &[0.1, 0.005, 1.0])]);
@@ -131,7 +133,7 @@ impl Visitor<f64> for Symmetric {
     }
 }
 
-/// For every law of the catalogue, u -> -u gives x -> -x.
+/// For every law of the catalogue, the opposite input results in the opposite motion.
 #[test]
 fn plant_with_any_law_is_symmetric_in_the_input() {
     for info in jbf_core::law::CATALOGUE {
@@ -149,7 +151,7 @@ fn plant_with_any_law_is_symmetric_in_the_input() {
     }
 }
 
-/// Asserts that the plant with each effect alone stays finite and is at rest again at the end.
+/// Asserts that the motion with each effect is finite and ends at rest.
 fn runs_and_rests<L: Law<f64> + Copy>(law: L, effects: &[Info]) {
     for info in effects {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
@@ -173,7 +175,8 @@ fn runs_and_rests<L: Law<f64> + Copy>(law: L, effects: &[Info]) {
     }
 }
 
-/// Every effect of the catalogue works in the plant, with a compatible law.
+/// The shaft moves and comes to rest with every effect of the catalogue, combined with a compatible
+/// law.
 #[test]
 fn plant_with_any_effect_moves_and_comes_to_rest() {
     let (of_drives, others): (Vec<Info>, Vec<Info>) = jbf_core::effect::CATALOGUE
@@ -184,7 +187,8 @@ fn plant_with_any_effect_moves_and_comes_to_rest() {
     runs_and_rests(newtons(15.0, 5.0), &of_drives);
 }
 
-/// With a compliant drive the shaft moves before the journal, by the twist under the input.
+/// With a compliant drive, the shaft turns before the journal, by the deflection of the spring
+/// under the input.
 #[test]
 fn shaft_of_a_compliant_drive_twists_before_the_journal_moves() {
     let plant = plant(&[("drive_compliance", &[60.0, 0.5, 1e-3])]);

@@ -1,6 +1,7 @@
-//! The reduced model (no inertia) compared with the full model at a tolerance of 1e-9.
+//! Tests of the journal law without inertia against that with inertia, with trajectories at a
+//! tolerance of 1e-9.
 //!
-//! The thesis calls the difference negligible; the expected values are from an independent
+//! Cohn (1998) calls the difference negligible. The expected values are from an independent
 //! implementation.
 
 mod common;
@@ -10,9 +11,8 @@ use jbf_core::driver::{trajectory, Sine};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// Largest difference of the unsigned coefficient relative to the loop's peak.
-///
-/// It is taken over the second period of `U = 0.127 sin(w t)`.
+/// Largest difference of the unsigned friction coefficient over the second period of `U = 0.127
+/// sin(w t)`, relative to the peak of the loop.
 fn difference(clock: Clock, omega_rad_s: f64) -> f64 {
     let full = JournalFull::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("valid");
     let reduced = law::<f64>(clock);

@@ -1,4 +1,5 @@
-//! The reduced model at the step of a control loop, 2 ms, and the orders of its steppers.
+//! Tests of the journal law without inertia at the time step of a control loop, 2 ms, and of the
+//! orders of the explicit methods.
 //!
 //! The reference is an independent implementation (order 8, rtol 1e-13).
 
@@ -15,7 +16,8 @@ use jbf_core::{Clock, Real};
 const AMPLITUDE_M_S: f64 = 0.127;
 const LOOP_STEP_S: f64 = 0.002;
 
-/// A reference run; its rows are time, speed, eps, phi, f.
+/// Reference run with its law and motion; rows contain time, speed, eps, phi and friction
+/// coefficient.
 struct Run {
     omega_rad_s: f64,
     clock: Clock,
@@ -27,7 +29,7 @@ impl Run {
         AMPLITUDE_M_S * (self.omega_rad_s * time_s).sin()
     }
 
-    /// Friction coefficients at the rows, in steps of `step_s`.
+    /// Friction coefficients at the rows of a reference run, computed in steps of `step_s`.
     fn friction<T: Real>(&self, stepper: &impl Stepper, step_s: f64) -> Vec<f64> {
         let law = law::<T>(self.clock);
         let mut state = law.start(T::of(common::LOAD_N));
@@ -44,7 +46,7 @@ impl Run {
         out
     }
 
-    /// Fastest change of the unsigned coefficient between loop steps, 1/s.
+    /// Fastest change of the unsigned friction coefficient between adjacent steps of a loop, 1/s.
     fn fastest_change_1_s(&self) -> f64 {
         let law = law::<f64>(self.clock);
         let mut state = law.start(common::LOAD_N);
@@ -128,10 +130,10 @@ fn runge_kutta_at_2_ms_matches_the_reference_to_1e_6() {
     }
 }
 
-/// With short steps only the ten digits of the reference limit the accuracy.
+/// With short steps, only the ten digits of the reference limit the accuracy.
 ///
-/// The remaining error at 2 ms comes from steps across the kink of |U| at a reversal. The steps
-/// here are short compared with the memory of the film.
+/// The remaining error at 2 ms is that of steps across the kink of |U| at a reversal. The short
+/// steps are much shorter than the time constant of the film.
 #[test]
 fn runge_kutta_with_short_steps_converges_to_the_reference() {
     for run in runs() {
@@ -147,11 +149,11 @@ fn runge_kutta_with_short_steps_converges_to_the_reference() {
     }
 }
 
-/// The error of Euler's method stays within its theoretical bound and halves with h.
+/// The error of Euler's method is within its theoretical bound and proportional to the step h.
 ///
-/// Along a stable film with response K the error obeys `e' = -lambda e - (h/2) x''`, so `e = -(h/2)
-/// int K x''`. Integrated by parts, with K falling from one to zero, it is at most `(h/2) max|x'|
-/// (1 + 1 + 1)`: the end, the start and the integral.
+/// For a stable film with the impulse response K, the error obeys `e' = -lambda e - (h/2) x''`, so
+/// `e = -(h/2) int K x''`. Integration by parts, with K falling from one to zero, results in the
+/// bound `(h/2) max|x'| (1 + 1 + 1)`: the end, the start and the integral.
 #[test]
 fn euler_error_is_within_its_theoretical_bound() {
     for run in runs() {
@@ -172,7 +174,7 @@ fn euler_error_is_within_its_theoretical_bound() {
     }
 }
 
-/// Errors at three steps on a smooth motion fall with the order of the method.
+/// The errors with three steps on a smooth motion show the orders of both methods.
 ///
 /// The motion is in one direction, always in mixed lubrication, so that neither |U| nor the
 /// asperity load has a kink.
@@ -205,10 +207,10 @@ fn euler_and_runge_kutta_have_their_order_on_a_smooth_motion() {
     }
 }
 
-/// Single precision is within 1e-4 of the loop's peak, also at very short steps.
+/// Single precision is within 1e-4 of the peak of the loop, also with very short steps.
 ///
-/// In the shortest steps the film changes by less than a unit in the last place. A plain sum would
-/// then not change: at 0.1 ms its error is 4e-3.
+/// In the shortest steps, the film changes by less than a unit in the last place. Without
+/// compensated summation, the error at 0.1 ms would be 4e-3.
 #[test]
 fn single_precision_agrees_with_double_at_any_step() {
     for run in runs() {

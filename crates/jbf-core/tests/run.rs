@@ -1,4 +1,5 @@
-//! Complete recorded runs: inner steps between samples, reversals between samples.
+//! Tests of predictions along whole records: inner steps between samples, reversals between
+//! samples.
 
 mod common;
 
@@ -8,7 +9,7 @@ use jbf_core::law::{with_law, Named, Visitor, CATALOGUE};
 use jbf_core::run::{film_rate_1_s, inner_step_s, inner_steps, predict, Record};
 use jbf_core::{Clock, Motion};
 
-/// Samples of a motion as columns.
+/// Columns of a sampled motion, and the temperature if there is one.
 struct Columns([Vec<f64>; 5], Option<Vec<f64>>);
 
 impl Columns {
@@ -55,7 +56,8 @@ fn run(effects: &[(&str, &[f64])], columns: &Columns, max_step_s: f64) -> Vec<f6
     out
 }
 
-/// Without inner steps and without reversals a run equals the chain, sample by sample.
+/// A prediction without inner steps and reversals equals the steps of the chain from sample to
+/// sample.
 #[test]
 fn run_without_inner_steps_equals_the_chain() {
     let sines = Sines::one_way(1.0);
@@ -67,10 +69,11 @@ fn run_without_inner_steps_equals_the_chain() {
     }
 }
 
-/// Inner steps refine a coarse record: halving them changes little, and the error decreases.
+/// The error of a prediction along a record with long sampling intervals decreases with the inner
+/// step.
 ///
-/// Reversals are between samples here. The lag would reveal a jump at a wrong instant: 0.02 s of 2
-/// F_d over tau is far above the tolerance.
+/// Reversals are between samples. With a jump at a wrong instant, the error with a lag would be far
+/// above the tolerance: 0.02 s times 2 F_d, divided by tau.
 #[test]
 fn error_decreases_with_the_inner_step_across_reversals() {
     let sines = Sines {
@@ -91,7 +94,7 @@ fn error_decreases_with_the_inner_step_across_reversals() {
     assert!(fine < coarse / 10.0, "{coarse} N, {fine} N");
 }
 
-/// Columns of different lengths end the run with the shortest; an empty one gives no result.
+/// The shortest column determines the length of a run; an empty column has no readings.
 #[test]
 fn run_ends_with_its_shortest_column() {
     let mut columns = Columns::of(&Sines::one_way(1.0), 0.01, 50);
@@ -101,9 +104,8 @@ fn run_ends_with_its_shortest_column() {
     assert!(run(&[], &columns, 0.01).is_empty());
 }
 
-/// The temperature is interpolated linearly between its samples.
-///
-/// A coarse record and a fine record give the same run.
+/// The temperature is interpolated linearly between its samples, so that records with long and
+/// short sampling intervals have the same readings.
 #[test]
 fn temperature_is_interpolated_between_its_samples() {
     let sines = Sines::one_way(1.0);
@@ -122,10 +124,10 @@ fn temperature_is_interpolated_between_its_samples() {
     assert!((coarse[200] - bare[200]).abs() > 0.5);
 }
 
-/// Warm oil requires shorter inner steps.
+/// Warm oil requires shorter inner steps: those of a run are determined by its warmest sample.
 ///
-/// The steps of a run follow its warmest sample, as for a film of that oil. Without a temperature,
-/// or at the reference temperature, there is no additional requirement.
+/// They equal the inner steps for a film of that oil. Without a temperature, and at the reference
+/// temperature, the inner steps are those of the law.
 #[test]
 fn warm_oil_requires_shorter_inner_steps() {
     let effects: [(&str, &[f64]); 1] = [("vogel_viscosity", &[800.0, -95.0, 40.0])];
@@ -146,9 +148,9 @@ fn warm_oil_requires_shorter_inner_steps() {
     assert!((warm / wanted - 1.0).abs() < 1e-3 && warm > 1.5 * without);
 }
 
-/// A speed that is zero except for rounding at a reversal is a reversal at that sample.
+/// A speed at a reversal that is zero except for rounding is a reversal at that sample.
 ///
-/// The following samples are as if the speed were small there.
+/// The following readings equal those after a small speed at this sample.
 #[test]
 fn speed_of_rounding_size_is_a_reversal_at_its_sample() {
     let turning = |speed_m_s: f64| {
@@ -171,7 +173,7 @@ fn speed_of_rounding_size_is_a_reversal_at_its_sample() {
     }
 }
 
-/// The predicted cost counts the actual steps: one per sample, and the inner ones.
+/// The predicted number of inner steps is the number of steps that a prediction makes.
 #[test]
 fn predicted_cost_of_a_run_is_its_number_of_inner_steps() {
     let chain = chain::<f64>(&[]);
@@ -184,7 +186,7 @@ fn predicted_cost_of_a_run_is_its_number_of_inner_steps() {
     }
 }
 
-/// The number of steps of a law of the catalogue along a record, and its readings (N).
+/// Computes the number of steps of a law along a record, and the readings (N).
 struct Counted<'a>(Record<'a>);
 
 impl Visitor<f64> for Counted<'_> {
@@ -198,7 +200,7 @@ impl Visitor<f64> for Counted<'_> {
     }
 }
 
-/// A law without memory takes one step per sample, with the same readings as with many steps.
+/// A law without memory makes one step per sample, with the same readings as with many steps.
 #[test]
 fn laws_without_memory_take_one_step_per_sample() {
     let motion = Sines::two_way(std::f64::consts::TAU / 40.0);
@@ -227,7 +229,8 @@ fn laws_without_memory_take_one_step_per_sample() {
     }
 }
 
-/// A law of the catalogue with its starting values along a record: inner step (s) and readings (N).
+/// Computes the inner step (s) of a law of the catalogue with its starting values along a record,
+/// and the readings (N).
 struct Along<'a>(Record<'a>, f64);
 
 impl Visitor<f64> for Along<'_> {
@@ -241,10 +244,11 @@ impl Visitor<f64> for Along<'_> {
     }
 }
 
-/// For widely spaced samples laws without a film take only as many steps as the record resolves.
+/// Along a record with long sampling intervals, a law without a film makes at most 16 steps per
+/// sample.
 ///
-/// That is 16 steps of 0.4 s instead of 200, and the friction hardly differs. For other records all
-/// steps are taken.
+/// That is 16 steps per 0.4 s instead of 200, and the friction hardly differs. Along other records,
+/// all steps are made.
 #[test]
 fn widely_spaced_samples_are_stepped_only_as_finely_as_the_record_resolves() {
     let slow = Sines::two_way(std::f64::consts::TAU / 40.0);

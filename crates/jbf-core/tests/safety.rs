@@ -1,4 +1,5 @@
-//! For any finite motion, load and step the film stays inside the bearing and remains finite.
+//! Tests that the film stays finite and the journal inside the bearing for any finite motion, load
+//! and step.
 
 mod common;
 
@@ -12,7 +13,7 @@ use jbf_core::{Bearing, Clock, Real};
 const LAWS: u32 = 500;
 const STEPS: u32 = 1000;
 
-/// A law with parameters over many decades.
+/// Journal law with random parameters over many decades.
 fn random_law<T: Real>(random: &mut Random) -> Journal<T> {
     let p = Parameters {
         f_m: T::of(random.log_uniform(1e-4, 10.0)),
@@ -31,8 +32,8 @@ fn random_law<T: Real>(random: &mut Random) -> Journal<T> {
 
 /// Asserts that the journal stays inside the bearing in half a million random steps.
 ///
-/// Speeds are up to 1e6 m/s, steps up to 10 s. Loads jump by a factor of a hundred, vanish, and
-/// change sign.
+/// Speeds are up to 1e6 m/s and steps up to 10 s. Loads jump by a factor of a hundred, become zero,
+/// and change sign.
 fn torture<T: Real>(stepper: &impl Stepper, seed: u64) {
     let mut random = Random::new(seed);
     let mut held = 0_u32;
@@ -92,7 +93,8 @@ fn runge_kutta_in_single_precision_keeps_the_journal_inside_the_bearing() {
     torture::<f32>(&Rk4, 4);
 }
 
-/// As [`torture`], for the full model.
+/// Asserts that the journal stays inside the bearing in random steps as in [`torture`], with
+/// inertia.
 fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
     let mut random = Random::new(seed);
     for _ in 0..LAWS {
@@ -172,8 +174,8 @@ fn input_that_is_not_finite_leaves_the_film_unchanged() {
 
 /// The film also recovers with asperities too soft to carry the load.
 ///
-/// A step could be held at the wall itself there, where the film would not flow and the journal
-/// would stay.
+/// A step could otherwise be limited to the wall itself, where the film does not flow and the
+/// journal would remain.
 #[test]
 fn film_recovers_with_asperities_too_soft_for_the_load() {
     for k0 in [1.0, 1e3, 1e5] {

@@ -1,4 +1,5 @@
-//! Learned values survive a power cycle: `cargo test -p jbf-core --features serde`.
+//! Tests that the learned values of compensators can be stored and resumed: `cargo test -p jbf-core
+//! --features serde`.
 #![cfg(feature = "serde")]
 
 mod common;
@@ -31,7 +32,7 @@ fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
     bench.state.compensator
 }
 
-/// Asserts that two states of a compensator give the same output over 5000 steps.
+/// Asserts that two states of a compensator result in the same output over 5000 steps.
 fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut other: C::State) {
     for i in 0..5_000_u32 {
         let t = f64::from(i) * DT_S;

@@ -1,6 +1,6 @@
-//! A chain built from names and lists of values equals the one built directly.
+//! Tests that a chain created from names and lists of values equals one created from types.
 //!
-//! Invalid lists are reported by name.
+//! Invalid lists are refused with the name of the parameter.
 
 mod common;
 
@@ -11,7 +11,7 @@ use jbf_core::law::Named;
 use jbf_core::spec::{Spec, Using};
 use jbf_core::{Bearing, Chain, Clock, ParameterError};
 
-/// Readings along a motion, and the rig.
+/// Computes the readings along a motion, and the properties of the rig.
 struct Along;
 
 impl Using<f64> for Along {

@@ -1,5 +1,5 @@
-//! Steady states: the Stribeck curve compared with an independent solution, its limits, and the
-//! printed transition eccentricities.
+//! Tests of steady states: the Stribeck curve against an independent solution, its limits, and the
+//! transition eccentricities of Cohn (1998).
 
 mod common;
 
@@ -11,7 +11,7 @@ use jbf_core::stepper::Rk4;
 use jbf_core::transition::transition_eccentricity;
 use jbf_core::{Bearing, Clock};
 
-/// Tables 4.2 to 4.5: number, load in N, parameters, eps_tr as printed.
+/// Tables 4.2 to 4.5 of Cohn (1998): number, load (N), parameters, eps_tr as printed.
 const TABLES: [(f64, f64, Parameters<f64>, f64); 4] = [
     (4.2, 104.0, Parameters::TABLE_4_2, 0.9727),
     (4.3, 83.5, Parameters::TABLE_4_3, 0.9718),
@@ -48,9 +48,9 @@ fn stribeck_curves_of_the_four_tables_agree_with_the_reference() {
     }
 }
 
-/// At vanishing speed the asperities carry the whole load: f -> f_m for every K0.
+/// At vanishing speed, the asperities carry the whole load and f approaches f_m, for every K0.
 ///
-/// The share of the film is of the order of U, so f_m - f decreases with U.
+/// The film carries a fraction of the order of U, so f_m - f decreases with U.
 #[test]
 fn friction_at_vanishing_speed_is_f_m() {
     for (table, ..) in TABLES {
@@ -84,10 +84,11 @@ fn long_run_settles_at_the_steady_state() {
     }
 }
 
-/// Three of the four printed values are (3.20) truncated after the fourth digit.
+/// Three of the four printed transition eccentricities are those of (3.20), truncated after the
+/// fourth digit.
 ///
-/// Table 4.2 prints 0.9727 where (3.20) gives 0.97235: an error of the thesis, which
-/// [`Journal::with_eps_tr`] reproduces.
+/// Table 4.2 prints 0.9727, but (3.20) gives 0.97235. [`Journal::with_eps_tr`] reproduces this
+/// error in Cohn (1998).
 #[test]
 fn transition_eccentricities_agree_with_the_printed_tables() {
     for (table, load_n, p, printed) in TABLES {
@@ -104,7 +105,7 @@ fn transition_eccentricities_agree_with_the_printed_tables() {
     }
 }
 
-/// A given eps_tr applies to the constructor's load, and returns with it.
+/// An eps_tr that was set applies at the nominal load, and again after a return to this load.
 #[test]
 fn given_transition_eccentricity_applies_again_after_a_return_to_its_load() {
     let law = law(4.2).with_eps_tr(0.9727).expect("inside the bearing");

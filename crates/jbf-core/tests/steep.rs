@@ -1,7 +1,7 @@
-//! Loops with models of steep viscous friction.
+//! Tests of control loops with friction models that have steep viscous friction.
 //!
-//! They are as accurate with a shaft that coasts for a fraction of a step as with one that coasts
-//! for many steps.
+//! Such a loop is as accurate if friction stops the shaft in a fraction of a time step as if this
+//! takes many steps.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn law<T: Real>(viscous: f64) -> Coulomb<T> {
     Coulomb::build(None, None, &values, Clock::Journal).expect("in the bounds")
 }
 
-/// RMS of the true error over a period, relative to the target's amplitude.
+/// RMS of the tracking error over a period, relative to the amplitude of the target.
 fn error<T: Real>(control: Control, viscous: f64, times: f64) -> f64 {
     let chain: Chain<f64, Coulomb<f64>> = chain_round(law(viscous), &[]);
     let model = Bare::new(law::<T>(viscous), 0.0127, DRIVE.volts_per_n, LOAD_N);
@@ -59,8 +59,10 @@ fn error<T: Real>(control: Control, viscous: f64, times: f64) -> f64 {
     square.sqrt() / size
 }
 
-/// Viscous friction, N s/m. The time constant of the shaft is 7 ms without it, and a seventh of a
-/// step with the largest value.
+/// Viscous friction, N s/m.
+///
+/// The time constant of the shaft is 7 ms without viscous friction, and a seventh of a step with
+/// the largest value.
 const VISCOUS: [f64; 10] = [0.0, 1e3, 2e3, 2.4e3, 3e3, 4e3, 5e3, 7e3, 1e4, 2e4];
 
 #[test]
@@ -81,9 +83,10 @@ fn steep_viscous_friction_raises_the_position_error_by_at_most_20_percent() {
     }
 }
 
-/// A target of ten times the drive's ability.
+/// The observer stays stable with a target of ten times the ability of the drive.
 ///
-/// The actual voltage differs from the commanded one, and so does the friction to be cancelled.
+/// The saturated voltage differs from the commanded one, and so does the friction that is
+/// cancelled.
 #[test]
 fn observer_stays_stable_if_the_drive_saturates() {
     for viscous in VISCOUS {

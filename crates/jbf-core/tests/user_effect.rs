@@ -1,7 +1,7 @@
-//! Effects defined outside the crate, in each stage that allows them.
+//! Tests of user-defined effects at each stage that allows them.
 //!
-//! They act like the catalogue's effects in the same stage. A typed set of effects is the same
-//! chain as the catalogue with those effects active.
+//! They act like the effects of the catalogue at the same stage. A chain with a typed set of
+//! effects equals one with the same effects of the catalogue.
 
 mod common;
 
@@ -30,7 +30,7 @@ type Bristle = AsBristle<Presliding<f64>>;
 type Other = Beside<CoulombDrag<f64>>;
 type Instrument = InInstrument<SensorLag<f64>>;
 
-/// Readings, and the friction as seen from the commanded side, under an oscillating load.
+/// Readings, and the force on the commanded side, under an oscillating load.
 fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
@@ -53,7 +53,7 @@ fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
     out
 }
 
-/// Name of an effect, and values for its parameters.
+/// Name of an effect, and start values of its parameters.
 fn page<P: Place<f64>>() -> (&'static str, Vec<f64>) {
     let values = P::INFO.parameters.iter().map(|p| p.starts[0]);
     (P::INFO.name, values.collect())
@@ -92,7 +92,8 @@ fn user_effect_equals_the_catalogue_effect_at_every_stage() {
     acts_alike::<Instrument>();
 }
 
-/// Effects of different stages act in the order of the chain, in whatever order they are written.
+/// Effects of different stages act in the order of the chain, regardless of the order in which they
+/// are combined.
 #[test]
 fn order_of_user_effects_does_not_change_the_readings() {
     let named = catalogue(&[
@@ -143,7 +144,7 @@ fn empty_set_of_user_effects_changes_no_bit() {
     }
 }
 
-/// At an infinite null an effect is rejected; it must be omitted.
+/// A user-defined effect with a parameter at an infinite null value is refused; it must be omitted.
 #[test]
 fn effect_at_an_infinite_null_is_refused() {
     let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
@@ -151,7 +152,7 @@ fn effect_at_an_infinite_null_is_refused() {
     assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
 }
 
-/// The longest step of a typed set is the shortest of those of its effects.
+/// The longest step of a typed set is the shortest one of its effects.
 #[test]
 fn longest_step_of_a_set_is_the_shortest_of_its_effects() {
     let set = (typed::<Other>(), typed::<Drive>());

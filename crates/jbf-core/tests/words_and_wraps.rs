@@ -1,7 +1,5 @@
-//! Properties of the core that no other test here checks.
-//!
-//! Names on its pages, a contact that does not deflect, an instrument alone, a periodic table, and
-//! learned viscous friction.
+//! Tests of names in descriptions, a law whose bristle does not deflect, an instrument alone, a
+//! periodic table, and learned viscous friction.
 
 mod common;
 
@@ -14,7 +12,7 @@ use jbf_core::page::{Bound, Start};
 use jbf_core::run::read_force;
 use jbf_core::{Friction, Motion};
 
-/// Files and Python use these names, each of them unique.
+/// The names of start rules and bounds in files and in Python are unique.
 #[test]
 fn start_rules_and_bounds_have_their_names_in_files() {
     let names = [
@@ -50,7 +48,7 @@ fn start_rules_and_bounds_have_their_names_in_files() {
     assert_eq!(Bound::TransitionSpeed.name(), "transition_speed");
 }
 
-/// A law that declares a bristle but leaves it rigid.
+/// Law that declares a bristle but does not implement its deflection.
 #[derive(Clone, Copy, Debug)]
 struct Rigid(f64);
 
@@ -77,7 +75,8 @@ impl Law<f64> for Rigid {
     fn advance(&self, _state: &mut (), _speed_m_s: [f64; 3], _rate: f64, _dt_s: f64) {}
 }
 
-/// A bristle that a law does not deflect gives its level along the motion, and zero at rest.
+/// The friction of a bristle that does not deflect is its level with the sign of the motion, and
+/// zero at rest.
 #[test]
 fn rigid_bristle_gives_its_level_along_the_motion() {
     let speeds = [0.1, 0.2, 0.1, 0.0, 0.0, -0.1, -0.3, 0.0];
@@ -93,7 +92,7 @@ fn rigid_bristle_gives_its_level_along_the_motion() {
     }
 }
 
-/// Readings of an instrument for a force, sample by sample.
+/// Readings of the instrument effects for a force, one per sample.
 fn read(effects: &[(&str, &[f64])], time_s: &[f64], force_n: &[f64]) -> Vec<f64> {
     let mut out = Vec::new();
     read_force(&chain::<f64>(effects).effects, time_s, force_n, |i, n| {
@@ -103,9 +102,10 @@ fn read(effects: &[(&str, &[f64])], time_s: &[f64], force_n: &[f64]) -> Vec<f64>
     out
 }
 
-/// A lag follows its differential equation along linear segments at any sample spacing.
+/// A lag follows its differential equation along linear segments of the force with any sampling
+/// interval.
 ///
-/// At a slope `s` it lags by `s tau (1 - exp(-t / tau))`.
+/// At a slope `s` the reading lags by `s tau (1 - exp(-t / tau))`.
 #[test]
 fn lag_of_linear_segments_follows_its_differential_equation() {
     let tau_s = 0.1;
@@ -124,7 +124,7 @@ fn lag_of_linear_segments_follows_its_differential_equation() {
     }
 }
 
-/// A drifting zero counts its time from the first sample, independent of the clock.
+/// The drift of a sensor is zero at the first sample of a run, regardless of the origin of time.
 #[test]
 fn drift_is_zero_at_the_first_sample() {
     let time_s: Vec<f64> = (0..12).map(|i| 50.0 + 0.5 * f64::from(i)).collect();
@@ -134,9 +134,9 @@ fn drift_is_zero_at_the_first_sample() {
     }
 }
 
-/// A table against the angle is one period, linear between its entries.
+/// A table of friction against the angle covers one period and is linear between its entries.
 ///
-/// The last entry connects to the first, and the table repeats in both directions.
+/// The last entry is followed by the first, in both directions.
 #[test]
 fn table_over_the_angle_is_periodic() {
     let table = Table::new([1.0, 3.0, 2.0, 6.0], Axis::Angle, 0.5, 0.0).expect("a table");
@@ -157,7 +157,7 @@ fn table_over_the_angle_is_periodic() {
     }
 }
 
-/// A table against the speed ignores the sign, and holds its last entry beyond its end.
+/// A table of friction against the speed ignores its sign; the last entry applies to higher speeds.
 #[test]
 fn table_over_the_speed_holds_its_last_entry() {
     let table = Table::new([1.0, 3.0, 2.0], Axis::Speed, 0.5, 0.0).expect("a table");
@@ -177,9 +177,9 @@ fn table_over_the_speed_holds_its_last_entry() {
     }
 }
 
-/// The learned gamma scales viscous friction only, and in proportion.
+/// The learned gamma scales viscous friction only, in proportion.
 ///
-/// With gamma zero only dry friction remains.
+/// For a gamma of zero, only dry friction remains.
 #[test]
 fn viscous_friction_is_proportional_to_the_learned_gamma() {
     let sent = |gamma: f64, velocity_rad_s: f64| {

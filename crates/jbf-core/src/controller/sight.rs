@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn constant_counter_is_frozen_if_the_voltage_moves_the_shaft() {
+    fn encoder_without_counts_is_reported_frozen_if_the_voltage_should_move_the_shaft() {
         let mut state = State::default();
         for step in 1..=2 {
             let (status, blind) =
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn repeated_doubts_last_twice_as_long_until_the_counter_changes() {
+    fn inferred_fault_lasts_twice_as_long_each_time_until_the_counter_changes() {
         let mut state = State::default();
         let mut lasted = [0; 3];
         for time in &mut lasted {

@@ -1,4 +1,4 @@
-//! A control loop on the simulated bench, without noise, for tests of controllers.
+//! Control loop with a simulated shaft, without noise, for tests of controllers.
 
 use super::{chain_round, law};
 use jbf_core::compensator::carried::Whole;
@@ -16,29 +16,29 @@ use jbf_core::plant::{Drive, Plant, State as PlantState};
 use jbf_core::reference::Target;
 use jbf_core::{Chain, Clock, Real};
 
-/// Step of the loop, s.
+/// Time step of the control loop, s.
 pub const DT_S: f64 = 0.002;
 /// Encoder counts per radian.
 pub const COUNTS_PER_RAD: f64 = 2387.3;
-/// The thesis's drive; a newton of friction corresponds to 0.03 V here.
+/// Drive of Cohn (1998) with 0.03 V per newton of friction.
 pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.03);
-/// Load, N.
+/// Load on the bearing, N.
 pub const LOAD_N: f64 = 104.0;
 
-/// The plant of the bench: Table 4.2's friction with effects, 1 ms steps.
+/// Simulated shaft with the friction of Table 4.2 (Cohn 1998) and effects, in steps of 1 ms.
 pub fn plant(effects: &[(&str, &[f64])]) -> Plant<f64, Journal<f64>> {
     let chain: Chain<f64, Journal<f64>> = chain_round(law(Clock::Journal), effects);
     Plant::new(chain, DRIVE, DT_S / 2.0).expect("the thesis's drive")
 }
 
-/// The controlled quantity.
+/// Controlled quantity: speed or angle.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Control {
     Position,
     Velocity,
 }
 
-/// The control loop with a compensator, with guards.
+/// Creates the control loop with a compensator and with fault detection.
 pub fn controller<T: Real, C: Compensator<T>>(
     control: Control,
     compensator: C,
@@ -66,13 +66,13 @@ pub fn controller<T: Real, C: Compensator<T>>(
     .expect("limits")
 }
 
-/// The compensator with the Coulomb observer.
+/// Creates a compensator with the Coulomb friction observer.
 pub fn coulomb<T: Real>() -> Coulomb<T> {
     let observer = CoulombObserver::new(0.01, 1.0, DRIVE.input_rad_s2_v, 3.0, DT_S);
     Coulomb::new(observer.expect("gains"), &DRIVE)
 }
 
-/// The thesis's learning compensator.
+/// Creates the learning compensator of Cohn (1998).
 pub fn learning<T: Real>(control: Control) -> Learning<T> {
     let rule = match control {
         Control::Position => Rule::THESIS_POSITION,
@@ -86,7 +86,7 @@ pub fn learning<T: Real>(control: Control) -> Learning<T> {
     Learning::new(law(Clock::Thesis), &settings).expect("gains")
 }
 
-/// Settings of the observed compensator on this bench.
+/// Settings of the compensator with a friction model and an observer, for this shaft.
 pub fn settings(control: Control) -> Settings {
     let s = Settings::new(&DRIVE, 60.0, 0.05, DT_S)
         .with_learning_1_s(2.0)
@@ -102,13 +102,13 @@ pub fn settings(control: Control) -> Settings {
     }
 }
 
-/// The observed compensator with a base law.
+/// Creates a compensator with a friction law, without effects, and an observer.
 pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
     let model = Bare::new(law(Clock::Journal), 0.0127, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")
 }
 
-/// The observed compensator with a chain that has effects.
+/// Creates a compensator with a friction chain with effects, and an observer.
 pub fn observed_with<T: Real>(
     control: Control,
     effects: &[(&str, &[f64])],
@@ -118,18 +118,18 @@ pub fn observed_with<T: Real>(
     Observed::new(model, &settings(control)).expect("settings")
 }
 
-/// A table of levels against speed.
+/// Creates a compensator with a table of friction levels against speed.
 pub fn table<T: Real>() -> Table<T, 8> {
     let levels = [0.8, 0.7, 0.6, 0.5, 0.4, 0.35, 0.3, 0.25];
     Table::new(levels.map(T::of), Axis::Speed, 0.5, 0.0).expect("table")
 }
 
-/// A repetitive compensator with a period of two seconds.
+/// Creates a repetitive compensator with a period of two seconds.
 pub fn repetitive<T: Real>() -> Repetitive<T, 64> {
     Repetitive::new(1000, 0.5, 0.1, 0.02, 3.0, DT_S).expect("lap")
 }
 
-/// Runs a block for a loop with each compensator of the core.
+/// Runs a block of code for a loop with each compensator of `jbf_core`.
 #[macro_export]
 macro_rules! with_each_compensator {
     ($t:ty, $control:expr, |$name:ident, $controller:ident| $body:block) => {{
@@ -157,7 +157,7 @@ macro_rules! with_each_compensator {
     }};
 }
 
-/// Plant and loop in one structure.
+/// Control loop with its simulated shaft.
 pub struct Bench<T: Real, C: Compensator<T>> {
     pub plant: Plant<f64, Journal<f64>>,
     pub shaft: PlantState<f64, jbf_core::law::journal::State<f64>>,
@@ -183,7 +183,7 @@ impl<T: Real, C: Compensator<T>> Bench<T, C> {
         }
     }
 
-    /// Makes one step of the loop, and of the plant with the loop's output.
+    /// Advances the loop to a reference value and rate, and the shaft with the output of the loop.
     pub fn step(&mut self, value: f64, rate: f64) -> Parts<T> {
         if !self.frozen {
             let counts = (self.shaft.angle_rad * COUNTS_PER_RAD).floor() as i64 + self.shift;

@@ -1,17 +1,17 @@
-//! A law with a constant coefficient, for comparison of effects with closed forms.
+//! Law with a constant friction coefficient, for comparisons of effects with closed forms.
 //!
-//! It also shows that a law can be implemented outside the crate.
+//! The law is implemented with the public interface only.
 
 use jbf_core::law::Law;
 use jbf_core::Friction;
 use jbf_core::Real;
 
-/// A constant friction coefficient.
+/// Law with a constant friction coefficient.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstantLaw(pub f64);
 
 impl<T: Real> Law<T> for ConstantLaw {
-    /// The last speed passed to the film, m/s.
+    /// Last speed of the film, m/s, which effects of the lubricant scale.
     type State = T;
 
     fn start(&self, _load_n: T) -> T {

@@ -1,12 +1,12 @@
-//! Drives a base law along a speed with any stepper.
+//! Integrates a journal law along a given speed with any explicit method.
 
 use jbf_core::law::journal::{Journal, State};
 use jbf_core::stepper::Stepper;
 use jbf_core::Real;
 
-/// Drives `law` from `t0` to `t1` (s) in equal steps of at most `step_s`.
+/// Advances `state` from `t0` to `t1` (s) in equal steps of at most `step_s`.
 ///
-/// U| is exact at the start, the middle and the end of each step.
+/// The speed |U| is exact at the start, the middle and the end of each step.
 pub fn drive<T: Real, S: Stepper>(
     law: &Journal<T>,
     stepper: &S,

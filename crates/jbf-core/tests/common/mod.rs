@@ -1,5 +1,6 @@
-//! Code shared by several tests. Each test file is a separate crate, so not every one uses all of
-//! it.
+//! Code shared by several test files.
+//!
+//! Each test file is a separate crate, so not every one uses all of the code.
 #![allow(dead_code)]
 
 pub mod bench;
@@ -15,10 +16,10 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::{Law, Named};
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 
-/// Load of Table 4.2, N.
+/// Load on the bearing in Table 4.2 of Cohn (1998), N.
 pub const LOAD_N: f64 = 104.0;
 
-/// Parameters of Table 4.2 for any scalar.
+/// Parameters of Table 4.2 of Cohn (1998) for any scalar type.
 pub fn table_4_2<T: Real>() -> Parameters<T> {
     let p = Parameters::TABLE_4_2;
     Parameters {
@@ -29,12 +30,12 @@ pub fn table_4_2<T: Real>() -> Parameters<T> {
     }
 }
 
-/// The law of Table 4.2 with a clock.
+/// Journal law of Table 4.2 of Cohn (1998) with a time scale of the film.
 pub fn law<T: Real>(clock: Clock) -> Journal<T> {
     Journal::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
 }
 
-/// A law in newtons: `(F_c + F_v |v|) sgn v` in motion, dry and viscous friction.
+/// Law in newtons with dry and viscous friction, `(F_c + F_v |v|) sgn v` in motion.
 pub fn newtons(kinetic_n: f64, viscous_n_s_m: f64) -> Coulomb<f64> {
     Coulomb::build(
         None,
@@ -45,12 +46,13 @@ pub fn newtons(kinetic_n: f64, viscous_n_s_m: f64) -> Coulomb<f64> {
     .expect("a sound law")
 }
 
-/// The law of Table 4.2 on the journal clock, in the thesis's rig, with effects.
+/// Chain of the journal law of Table 4.2 and effects, with the physical time scale and the rig of
+/// Cohn (1998).
 pub fn chain<T: Real>(effects: &[(&str, &[f64])]) -> Chain<T, Journal<T>> {
     chain_round(law(Clock::Journal), effects)
 }
 
-/// Any law in the thesis's rig, with effects.
+/// Chain of any law and effects in the rig of Cohn (1998).
 pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L> {
     let mut all = Effects::NONE;
     for (name, values) in effects {
@@ -69,7 +71,8 @@ pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L
     }
 }
 
-/// Effects without which an effect changes nothing: a weight if it needs a transmitted force.
+/// Further effects that an effect needs to have an influence: a weight if it needs a transmitted
+/// force.
 pub fn company(info: &Info) -> Vec<(&'static str, &'static [f64])> {
     const WEIGHT: &[f64] = &[40.0, 0.3];
     let needs = info.needs.contains(&Need::Transmitted);

@@ -1,12 +1,14 @@
-//! Motions for tests of a chain.
+//! Imposed motions for tests of a chain.
 
 use super::random::Random;
 use super::LOAD_N;
 use jbf_core::{Bearing, Motion, Real};
 
-/// `U = offset + sum of amplitude sin(omega t + phase)`, with exact rate and angle.
+/// Sum of sines `U = offset + sum of amplitude sin(omega t + phase)`, with exact acceleration and
+/// angle.
 ///
-/// The load is constant. `sign` = -1 mirrors the motion; during a rest the shaft does not move.
+/// The load is constant. A `sign` of -1 mirrors the motion. The shaft does not move during the
+/// rest.
 #[derive(Clone, Debug)]
 pub struct Sines {
     pub offset_m_s: f64,
@@ -18,13 +20,13 @@ pub struct Sines {
 }
 
 impl Sines {
-    /// Returns the same motion with a rest.
+    /// Returns the motion with an additional rest.
     pub fn resting(mut self, from_s: f64, length_s: f64) -> Self {
         self.rest_s = Some([from_s, length_s]);
         self
     }
 
-    /// Motion in both directions of chapter 4 at 104 N.
+    /// Motion in both directions of chapter 4 of Cohn (1998), at 104 N.
     pub fn two_way(omega_rad_s: f64) -> Self {
         Self {
             offset_m_s: 0.0,
@@ -34,7 +36,7 @@ impl Sines {
         }
     }
 
-    /// Motion in one direction of chapter 4 at 104 N.
+    /// Motion in one direction of chapter 4 of Cohn (1998), at 104 N.
     pub fn one_way(omega_rad_s: f64) -> Self {
         Self {
             offset_m_s: 0.0728,
@@ -44,7 +46,7 @@ impl Sines {
         }
     }
 
-    /// Three sines of random size, frequency and phase.
+    /// Motion of three sines with random amplitude, frequency and phase.
     pub fn random(random: &mut Random) -> Self {
         let wave = |r: &mut Random| {
             [
@@ -73,12 +75,12 @@ impl Sines {
         }
     }
 
-    /// Temperature at a time, C: that of a room with intermittent heating.
+    /// Temperature at a time, C, as in a room with intermittent heating.
     pub fn temperature_c(time_s: f64) -> f64 {
         31.0 + 6.0 * (0.7 * time_s).sin()
     }
 
-    /// The motion at a time under another load, N.
+    /// Returns the motion at a time under another load (N).
     pub fn under<T: Real>(&self, load_n: f64, time_s: f64) -> Motion<T> {
         self.at(time_s).with_load_n(T::of(load_n))
     }
@@ -110,7 +112,7 @@ impl Sines {
     }
 }
 
-/// Motion at constant speed from angle zero.
+/// Motion at a constant speed that starts at angle zero.
 pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
     Sines {
         offset_m_s: velocity_m_s,
@@ -121,7 +123,7 @@ pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
     .at(time_s)
 }
 
-/// At rest at an angle, rad.
+/// State of rest at an angle, rad.
 pub fn held<T: Real>(angle_rad: f64, time_s: f64) -> Motion<T> {
     Motion::at_rest(T::of(LOAD_N))
         .with_time_s(T::of(time_s))

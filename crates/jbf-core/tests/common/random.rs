@@ -1,6 +1,7 @@
-//! A small seeded generator, so that a failure can be repeated: xorshift64* (Vigna 2016).
+//! Small random number generator with a seed, so that a failure can be repeated: xorshift64* (Vigna
+//! 2016).
 
-/// The random number generator.
+/// State of the random number generator.
 pub struct Random(u64);
 
 impl Random {
@@ -8,7 +9,7 @@ impl Random {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    /// Uniform in [0, 1).
+    /// Draws a number with a uniform distribution in [0, 1).
     pub fn unit(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -21,7 +22,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Uniform in the logarithm.
+    /// Draws a number whose logarithm has a uniform distribution between two limits.
     pub fn log_uniform(&mut self, low: f64, high: f64) -> f64 {
         (low.ln() + (high / low).ln() * self.unit())
             .exp()
@@ -32,7 +33,8 @@ impl Random {
         self.unit() < probability
     }
 
-    /// Draws a value within the bounds of a parameter, over all decades where the bounds allow.
+    /// Draws a value within the bounds of a parameter, with a uniform logarithm if the bounds allow
+    /// it.
     pub fn parameter(&mut self, p: &jbf_core::effect::Parameter) -> f64 {
         if p.lower < 0.0 {
             self.uniform(p.lower, p.upper)

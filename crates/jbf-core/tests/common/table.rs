@@ -1,6 +1,6 @@
 //! Comma-separated reference tables, included at compile time.
 
-/// The rows of a table after its header, as numbers.
+/// Returns the rows of a table after its header, as numbers.
 pub fn rows<const N: usize>(text: &str) -> Vec<[f64; N]> {
     text.lines()
         .skip(1)

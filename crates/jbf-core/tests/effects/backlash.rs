@@ -1,4 +1,5 @@
-//! Backlash: after each reversal the journal rests for the angle of the gap, and then follows.
+//! Tests of backlash: after each reversal the journal rests while the drive crosses the gap, and
+//! then follows.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;
@@ -15,9 +16,8 @@ fn signal(gap_rad: f64, sines: &Sines, steps: u32) -> Vec<f64> {
     readings(&chain, DT_S, steps, |t| sines.at(t))
 }
 
-/// `U = A sin t` reverses at pi.
-///
-/// The drive then crosses the gap until `A (1 + cos t) = gap R`, and so on after each reversal.
+/// For `U = A sin t`, the drive reverses at pi and crosses the gap until `A (1 + cos t) = gap R`,
+/// and so on after each reversal.
 #[test]
 fn friction_is_zero_after_a_reversal_until_the_gap_is_crossed() {
     let gap = 0.4;
@@ -38,7 +38,7 @@ fn friction_is_zero_after_a_reversal_until_the_gap_is_crossed() {
     }
 }
 
-/// Motion without a reversal is not affected, and at the first motion the flank is in contact.
+/// The effect is zero without a reversal, because the flank is in contact at the first motion.
 #[test]
 fn motion_in_one_direction_is_unaffected() {
     for sines in [
@@ -50,9 +50,9 @@ fn motion_in_one_direction_is_unaffected() {
     }
 }
 
-/// A swing shorter than the gap does not move the journal after its first stroke.
+/// An oscillation smaller than the gap does not move the journal after its first stroke.
 #[test]
-fn swing_shorter_than_the_gap_does_not_move_the_journal() {
+fn oscillation_smaller_than_the_gap_does_not_move_the_journal() {
     let omega = 25.0;
     let sines = Sines {
         offset_m_s: 0.0,
@@ -75,7 +75,7 @@ fn swing_shorter_than_the_gap_does_not_move_the_journal() {
     }
 }
 
-/// The reading of a recorded run is continuous in the gap.
+/// The predicted reading is a continuous function of the size of the gap.
 ///
 /// Its derivative with respect to the gap is that of the ramp that replaces the jump.
 #[test]

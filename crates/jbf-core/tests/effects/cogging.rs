@@ -1,4 +1,4 @@
-//! Cogging: a force `A sin(2 pi x/p - phi)` in motion and at rest, which is not friction.
+//! Tests of cogging: a force `A sin(2 pi x/p - phi)` in motion and at rest, which is not friction.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -22,7 +22,7 @@ fn force_is_periodic_in_the_position_with_the_pitch() {
     }
 }
 
-/// At rest the drive holds against it; the holding level of friction does not change.
+/// The force acts on a drive at rest; the friction level that holds the drive does not change.
 #[test]
 fn force_acts_at_rest_without_changing_the_holding_level() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, 0.01, 0.5])]);
@@ -35,7 +35,7 @@ fn force_acts_at_rest_without_changing_the_holding_level() {
     assert_eq!(felt.jump, F_C_N);
 }
 
-/// Over whole pitches its work is zero.
+/// The work of the force over whole pitches is zero.
 #[test]
 fn work_over_whole_pitches_is_zero() {
     let (pitch, speed) = (0.01, 0.02);
@@ -47,7 +47,7 @@ fn work_over_whole_pitches_is_zero() {
     assert!((mean - F_C_N).abs() < 1e-9, "{mean}");
 }
 
-/// Far from position zero single precision still resolves the position within a pitch.
+/// Single precision resolves the position within a pitch far from position zero.
 #[test]
 fn force_in_single_precision_agrees_with_double_far_from_zero() {
     use crate::common::chain;
@@ -60,9 +60,10 @@ fn force_in_single_precision_agrees_with_double_far_from_zero() {
     }
 }
 
-/// The force arises in the motor: it is not transmitted by a gear and does not affect its friction.
+/// A gear does not transmit the cogging force of its motor, so its load-dependent friction does not
+/// change.
 #[test]
-fn force_does_not_change_the_friction_of_a_gear() {
+fn cogging_force_does_not_change_the_load_dependent_friction_of_a_gear() {
     let gear: (&str, &[f64]) = ("torque_proportional", &[0.5]);
     let teeth: (&str, &[f64]) = ("cogging", &[2.0, 0.01, 0.5]);
     let sines = Sines::two_way(1.0);

@@ -1,4 +1,4 @@
-//! A second periodic force adds to the first, in motion and at rest.
+//! Tests that a second periodic force is added to the first, in motion and at rest.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 const F_C_N: f64 = 6.0;
 
 #[test]
-fn second_wave_is_added_to_the_first() {
+fn second_cogging_force_is_added_to_the_first() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let pair: [(&str, &[f64]); 2] = [
         ("cogging", &[1.5, 0.02, 0.4]),

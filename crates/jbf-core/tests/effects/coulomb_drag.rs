@@ -1,10 +1,10 @@
-//! Coulomb drag adds F_d sgn(v), independent of the load.
+//! Tests that Coulomb drag adds F_d sgn(v), independent of the load.
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
 
 #[test]
-fn force_is_constant_with_the_sign_of_the_motion() {
+fn drag_has_the_sign_of_the_motion_and_does_not_depend_on_the_load() {
     let sines = Sines::two_way(1.0);
     let motion = |t: f64| sines.at(t).with_load_n(104.0 + 30.0 * (3.0 * t).sin());
     let bare = readings(&chain::<f64>(&[]), 0.01, 700, motion);

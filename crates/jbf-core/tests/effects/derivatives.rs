@@ -1,9 +1,10 @@
-//! Derivatives from dual numbers compared with central differences, for every parameter.
+//! Tests of derivatives from dual numbers against central differences, for every parameter of the
+//! journal law and of every effect.
 //!
-//! The parameters are those of the law and of every effect. A central difference of step h has the
-//! error h^2 F'''/6 and the rounding error divided by h. With h = 5e-5 of the parameter the first
-//! is 2.5e-9 of the slope times a factor of curvature, for which 4e2 is allowed. The second is the
-//! rounding of a thousand steps, 1e-12 of the force, divided by h.
+//! A central difference of step h has the error h^2 F'''/6 and the rounding error divided by h.
+//! With h = 5e-5 of the parameter the first is 2.5e-9 of the slope times a factor of curvature, for
+//! which 4e2 is allowed. The second is the rounding of a thousand steps, 1e-12 of the force,
+//! divided by h.
 
 use crate::common::motion::Sines;
 use crate::common::{company, readings, table_4_2, LOAD_N};
@@ -13,7 +14,8 @@ use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
 
 const DT_S: f64 = 0.01;
 
-/// A load other than the law's if the effect requires another load to be observable.
+/// Load of a run, N; it differs from the nominal load if the effect would otherwise have no
+/// influence.
 fn load_n(info: &Info) -> f64 {
     if info.needs.contains(&Need::Loads) {
         83.5
@@ -22,7 +24,7 @@ fn load_n(info: &Info) -> f64 {
     }
 }
 
-/// Readings as a function of the law's four parameters, followed by the effect's.
+/// Readings as a function of the four parameters of the law and those of the effect.
 fn run<T: Real>(info: &Info, p: &[T], motion: impl Fn(f64) -> Motion<T>) -> Vec<T> {
     let parameters = Parameters {
         f_m: p[0],
@@ -75,20 +77,21 @@ fn carried(info: &Info, p: &[f64], i: usize, sines: &Sines) -> Vec<f64> {
         .collect()
 }
 
-/// Readings with parameter `i` changed.
+/// Readings with parameter `i` changed by `by`.
 fn moved(info: &Info, p: &[f64], i: usize, by: f64, sines: &Sines) -> Vec<f64> {
     let mut q = p.to_vec();
     q[i] += by;
     run(info, &q, |t| sines.under(load_n(info), t))
 }
 
-/// Difference quotients, their step, and the force from which they were computed.
+/// Central and one-sided differences of the readings, their step, and the force from which they
+/// were computed.
 struct Difference {
-    /// Quotients of second order: of values on both sides, ahead and behind.
+    /// Differences of second order, for each sample: central, forward and backward.
     ///
     /// A kink within the step (a contact, a breakaway, a sample where the interpolation of a delay
-    /// changes) invalidates the quotients across it. The derivative is that of the side on which
-    /// the value is.
+    /// changes) invalidates a difference across it. The derivative is then that of the side of the
+    /// present value.
     slopes: Vec<Vec<f64>>,
     step: f64,
     peak_n: f64,
@@ -122,7 +125,7 @@ impl Difference {
     }
 }
 
-/// One-sided quotient of second order, from values at zero, one and two steps.
+/// One-sided difference quotient of second order, from values at zero, one and two steps.
 fn one_sided(at: &[f64], one: &[f64], two: &[f64], step: f64) -> Vec<f64> {
     let slope = |i: usize| (4.0 * one[i] - two[i] - 3.0 * at[i]) / (2.0 * step);
     (0..at.len()).map(slope).collect()
@@ -166,9 +169,9 @@ fn derivatives_of_every_effect_match_differences() {
     }
 }
 
-/// At a finite null the derivative equals the one-sided difference of second order.
+/// At a finite null value, the derivative equals the one-sided difference of second order.
 ///
-/// A fit that starts at the null needs this derivative to find that an effect is missing.
+/// A score test for a missing effect uses this derivative.
 #[test]
 fn derivatives_at_a_finite_null_match_one_sided_differences() {
     let mut seen = 0;

@@ -1,4 +1,4 @@
-//! All friction of the contact, dry and viscous, is `1 + a sgn v` times that of the law.
+//! Tests that the dry and viscous friction of the contact are multiplied by `1 + a sgn v`.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,5 @@
-//! A compliant drive: twist, free and dry-damped oscillation, sticking without drift.
+//! Tests of a compliant drive: static deflection, oscillation with and without dry friction,
+//! sticking without drift.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, held};
@@ -8,10 +9,10 @@ use std::f64::consts::TAU;
 
 const K: f64 = 60.0;
 const J: f64 = 2e-3;
-/// n R, m.
+/// Product n R of the number of bearings and the radius, m.
 const ARM_M: f64 = 4.0 * 0.0127;
 
-/// Journal angles along a motion.
+/// Journal angles along a motion (rad), for a Coulomb friction `f` and a damping `c`.
 fn angles(f: f64, c: f64, dt_s: f64, steps: u32, motion: impl Fn(f64) -> Motion<f64>) -> Vec<f64> {
     let chain = chain_round(ConstantLaw(f), &[("drive_compliance", &[K, c, J])]);
     let mut state = chain.start(&motion(0.0));
@@ -23,12 +24,13 @@ fn angles(f: f64, c: f64, dt_s: f64, steps: u32, motion: impl Fn(f64) -> Motion<
         .collect()
 }
 
-/// Release at an angle one hundredth of a radian from that of the encoder.
+/// Motion at rest of the encoder side, which releases the journal from a hundredth of a radian
+/// beside it.
 fn let_go(t: f64) -> Motion<f64> {
     held(if t == 0.0 { 0.0 } else { 0.01 }, t)
 }
 
-/// Extremes of a signal: index and value.
+/// Local extremes of a signal: index and value.
 fn extremes(signal: &[f64]) -> Vec<(usize, f64)> {
     (1..signal.len() - 1)
         .filter(|&i| (signal[i] - signal[i - 1]) * (signal[i + 1] - signal[i]) < 0.0)
@@ -36,7 +38,7 @@ fn extremes(signal: &[f64]) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// In steady rotation the journal lags by n R F / k, and the damper has no effect.
+/// In steady rotation the journal lags by n R F / k, and the damper has no influence.
 #[test]
 fn journal_lags_by_the_static_twist_in_steady_rotation() {
     let f = 0.1;
@@ -70,7 +72,8 @@ fn journal_without_friction_oscillates_with_its_natural_period() {
     assert!(((last.1 - 0.01) / (first.1 - 0.01) / decay - 1.0).abs() < 1e-3);
 }
 
-/// With dry friction the amplitude decreases by 2 n R F / k per half period, and then it sticks.
+/// With dry friction, the amplitude decreases by 2 n R F / k per half period, and then the journal
+/// sticks.
 #[test]
 fn amplitude_falls_by_a_constant_per_half_period_with_dry_friction() {
     let f = 0.005;
@@ -92,7 +95,8 @@ fn amplitude_falls_by_a_constant_per_half_period_with_dry_friction() {
     assert!(got[got.len() - 5000..].iter().all(|a| *a == rest));
 }
 
-/// A torque below the sliding friction never moves the journal, and the load cell shows it.
+/// A torque below the sliding friction never moves the journal, and the load cell measures this
+/// torque.
 #[test]
 fn journal_sticks_below_the_sliding_friction_and_the_cell_reads_the_torque() {
     let f = 0.2;

@@ -1,4 +1,5 @@
-//! Dry friction times `1 + a sgn v`: different levels in the two directions, one viscous slope.
+//! Tests that dry friction is multiplied by `1 + a sgn v`, while viscous friction does not depend
+//! on the direction.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -24,7 +25,7 @@ fn dry_level_differs_by_direction_but_the_viscous_slope_does_not() {
     }
 }
 
-/// In motion the effect equals a constant force; at rest it is zero.
+/// The effect equals a constant force in motion, and is zero at rest.
 #[test]
 fn effect_equals_a_constant_force_in_motion_and_is_zero_at_rest() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);

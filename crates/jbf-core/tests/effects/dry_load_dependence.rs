@@ -1,4 +1,4 @@
-//! A level `mu L` in the direction of motion adds to the level in newtons; never below zero.
+//! Tests that a friction level `mu L` is added to that of the law, with a sum of zero or more.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,5 @@
-//! A level linear in the temperature, `F_c (1 + a (T - T_0))`, limited at zero.
+//! Tests of dry friction linear in the temperature, `F_c (1 + a (T - T_0))`, with a lower limit of
+//! zero.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -23,7 +24,7 @@ fn dry_level_depends_on_temperature_but_viscous_friction_does_not() {
     }
 }
 
-/// Beyond the zero of the line dry friction is zero and does not become a driving force.
+/// Dry friction is zero, not negative, at temperatures at which the linear function is negative.
 #[test]
 fn dry_level_is_zero_beyond_the_zero_of_its_line() {
     let effect: [(&str, &[f64]); 1] = [("dry_temperature_dependence", &[-0.02, 20.0])];

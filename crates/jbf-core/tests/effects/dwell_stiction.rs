@@ -1,6 +1,5 @@
-//! After a rest of length t_d friction is higher by `a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)`.
-//!
-//! s is the distance slid since the rest.
+//! Tests that friction after a rest of length t_d is higher by `a (1 - exp(-(t_d/t_0)^m))
+//! exp(-s/s_0)`, with s the sliding distance since the rest.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
@@ -10,10 +9,10 @@ const F: f64 = 0.1;
 const DT_S: f64 = 0.01;
 const SPEED_M_S: f64 = 0.02;
 
-/// Samples at which two rests begin and end.
+/// Indices of the samples at which two rests begin and end.
 const RESTS: [[usize; 2]; 2] = [[50, 300], [500, 580]];
 
-/// Forward, a rest, backward, a shorter rest, forward.
+/// Speed at a sample, m/s: forward, a rest, backward, a shorter rest, forward.
 fn speed(i: usize) -> f64 {
     let [first, second] = RESTS;
     match i {

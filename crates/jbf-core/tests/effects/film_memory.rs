@@ -1,12 +1,11 @@
-//! A film with a clock faster by `factor` equals the law's own film in a slower motion.
-//!
-//! The speeds of that motion change more slowly by the same factor.
+//! Tests that a film whose dynamics are faster by `factor` has the friction of the unchanged film
+//! in a motion slower by this factor.
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
 
 #[test]
-fn faster_clock_gives_the_readings_of_a_slower_motion() {
+fn faster_film_has_the_friction_of_a_slower_motion() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let dt = 2e-3;
     for factor in [0.3, 0.5, 2.0, 2.7] {
@@ -25,9 +24,9 @@ fn faster_clock_gives_the_readings_of_a_slower_motion() {
     }
 }
 
-/// The steady state does not depend on the speed of the clock.
+/// The steady friction does not depend on the rate of the film dynamics.
 #[test]
-fn steady_state_does_not_depend_on_the_clock() {
+fn steady_friction_does_not_depend_on_the_rate_of_the_film() {
     let speed = |t: f64| crate::common::motion::constant::<f64>(0.05, t);
     let end = |effects: &[(&str, &[f64])]| readings(&chain(effects), 0.01, 20_000, speed)[20_000];
     let bare = end(&[]);

@@ -1,4 +1,4 @@
-//! No effect gives a NaN or an infinity for any parameters within the bounds.
+//! Tests that readings with any effect are finite for any parameters within the bounds.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
@@ -6,7 +6,7 @@ use crate::common::{chain, readings, LOAD_N};
 use jbf_core::effect::CATALOGUE;
 use jbf_core::{Motion, Real};
 
-/// An unrealistic motion with jumps of speed, load, angle and temperature.
+/// Unrealistic motion with jumps of speed, load, angle and temperature.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
     Motion::at_rest(T::of(if random.chance(0.1) {
@@ -57,7 +57,7 @@ fn every_effect_is_finite_in_single_precision() {
     check::<f32>(4);
 }
 
-/// A lost sample or a step of zero length does not change a run.
+/// A sample that is not finite and a step of zero length do not change a run.
 #[test]
 fn invalid_sample_or_step_does_not_change_a_run() {
     for info in CATALOGUE {

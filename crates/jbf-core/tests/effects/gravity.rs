@@ -1,4 +1,4 @@
-//! A pendulum on the shaft: `G sin(theta - theta_0)`, in motion or at rest.
+//! Tests of a weight on the shaft: a force `G sin(theta - theta_0)`, in motion and at rest.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -24,7 +24,7 @@ fn weight_is_proportional_to_the_sine_of_the_angle() {
     }
 }
 
-/// The link of a joint behind another joint turns with both.
+/// The weight of a joint that follows another joint depends on the sum of both angles.
 #[test]
 fn weight_behind_another_joint_depends_on_the_sum_of_both_angles() {
     let sines = Sines::two_way(1.0);

@@ -1,4 +1,4 @@
-//! A force `m_e dv/dt` in addition to that of the bearing, also at reversals.
+//! Tests that a force `m_e dv/dt` is added to that of the bearing, also at reversals.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;

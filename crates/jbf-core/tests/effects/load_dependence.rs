@@ -1,4 +1,5 @@
-//! U_tr and K0 as powers of the load: the thesis's tables, and the law with other parameters.
+//! Tests of U_tr and K0 as powers of the load: the tables of Cohn (1998), and the equivalent law
+//! with other parameters.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, readings, LOAD_N};
@@ -6,10 +7,10 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// With the exponents of Tables 4.2 and 4.3 the law of 104 N becomes, under 83.5 N, that of Table
-/// 4.3.
+/// The law for 104 N (Table 4.2 of Cohn 1998) becomes that for 83.5 N (Table 4.3) if the exponents
+/// are those between the two tables.
 ///
-/// This holds for either clock, with and without the inertia of the journal.
+/// Both time scales are tested, with and without the inertia of the journal.
 #[test]
 fn exponents_of_two_tables_convert_the_law_of_one_load_to_the_other() {
     let share: f64 = 83.5 / LOAD_N;
@@ -44,7 +45,7 @@ fn exponents_of_two_tables_convert_the_law_of_one_load_to_the_other() {
     }
 }
 
-/// Under the rig's own load the exponents have no influence.
+/// The exponents have no influence at the nominal load of the rig.
 #[test]
 fn exponents_have_no_influence_at_the_load_of_the_rig() {
     let law = Journal::new(

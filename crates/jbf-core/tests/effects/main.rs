@@ -1,4 +1,4 @@
-//! Rules that hold for all effects of the catalogue, and a closed form for each effect.
+//! Tests of rules for all effects of the catalogue, and of a closed form for each effect.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -48,7 +48,8 @@ mod vogel_viscosity;
 mod warm_up;
 mod zero_load_dependence;
 
-/// Every effect has a closed form: a file with its name here, named above, that contains a test.
+/// Every effect has a test file with its name, declared in this file, that contains at least one
+/// test.
 #[test]
 fn every_effect_of_the_catalogue_has_a_test_of_its_closed_form() {
     let here = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/effects");

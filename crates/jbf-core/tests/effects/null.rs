@@ -1,4 +1,5 @@
-//! At its null an effect is absent: the run equals that of the base law to the bit.
+//! Tests that the readings with an effect at its null value equal those of the base law bit for
+//! bit.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
@@ -6,7 +7,7 @@ use crate::common::{chain, company, readings};
 use jbf_core::effect::{Info, Need, CATALOGUE};
 use jbf_core::{Motion, Real};
 
-/// Parameters of an effect at its null, the others anywhere within their bounds.
+/// Parameters of an effect at its null value; the other parameters are random.
 fn at_null(info: &Info, random: &mut Random) -> Vec<f64> {
     info.parameters
         .iter()
@@ -53,7 +54,8 @@ fn effect_at_its_null_changes_no_bit_in_single_precision() {
     check::<f32>();
 }
 
-/// An effect that requires a temperature changes nothing, to the bit, if none was recorded.
+/// An effect that depends on the temperature changes no bit of the readings if no temperature was
+/// recorded.
 #[test]
 fn temperature_effects_change_no_bit_if_no_temperature_is_recorded() {
     let sines = Sines::two_way(1.0);
@@ -74,7 +76,8 @@ fn temperature_effects_change_no_bit_if_no_temperature_is_recorded() {
     }
 }
 
-/// Away from its null every effect changes the readings, so that the test above can fail.
+/// Every effect changes the readings away from its null value, so that the tests of null values can
+/// fail.
 #[test]
 fn every_effect_changes_the_readings_away_from_its_null() {
     for info in CATALOGUE {

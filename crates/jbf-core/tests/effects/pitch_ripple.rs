@@ -1,4 +1,4 @@
-//! Friction times `1 + a cos(2 pi x/p - phi)`: level and slope vary with the position.
+//! Tests that friction is multiplied by `1 + a cos(2 pi x/p - phi)`, both dry and viscous.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -43,7 +43,8 @@ fn pitch_of_one_turn_equals_the_position_ripple() {
     }
 }
 
-/// At rest there is no force; the holding level varies with the position.
+/// The reading of a rigid drive at rest is zero; the friction level that holds the drive varies
+/// with the position.
 #[test]
 fn holding_level_varies_with_the_position_but_the_reading_at_rest_is_zero() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("pitch_ripple", &[0.5, 0.01, 0.0])]);

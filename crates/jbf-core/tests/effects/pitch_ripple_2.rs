@@ -1,4 +1,4 @@
-//! A second ripple multiplies the friction of the first.
+//! Tests that a second ripple multiplies the friction with the first.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -8,7 +8,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn second_ripple_multiplies_the_first() {
+fn second_ripple_multiplies_the_friction_with_the_first() {
     let sines = Sines::two_way(1.0);
     let pair: [(&str, &[f64]); 2] = [
         ("pitch_ripple", &[0.2, 0.02, 0.4]),

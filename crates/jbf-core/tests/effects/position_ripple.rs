@@ -1,4 +1,4 @@
-//! A ripple with one period per turn, largest at theta_0.
+//! Tests of a friction ripple with one period per turn and its maximum at theta_0.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
@@ -32,7 +32,7 @@ fn ripple_has_one_maximum_per_turn_at_theta_0() {
     assert_eq!(above.windows(2).filter(|w| w[0] != w[1]).count(), 2);
 }
 
-/// At every angle, and for dry and viscous friction alike.
+/// Dry and viscous friction follow the cosine at every angle.
 #[test]
 fn dry_and_viscous_friction_follow_the_cosine_of_the_angle() {
     let (f_c, f_v) = (6.0, 40.0);

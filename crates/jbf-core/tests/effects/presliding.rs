@@ -1,4 +1,5 @@
-//! A reversal at constant friction is an exponential in the distance slid, for any step.
+//! Tests that friction after a reversal is exponential in the sliding distance, for any step, if
+//! the sliding friction is constant.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
@@ -12,7 +13,8 @@ const F: f64 = 0.2;
 const SIGMA_1_M: f64 = 3e3;
 const SPEED_M_S: f64 = 1e-3;
 
-/// From rest forward until the bristles slide, then back: readings relative to friction.
+/// Readings relative to the sliding friction: forward from rest until the bristles slide, then
+/// back.
 fn reversal(dt_s: f64, forward: u32, back: u32) -> Vec<f64> {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
     let turn = dt_s * (f64::from(forward) + 0.5);
@@ -90,7 +92,8 @@ fn bristles_are_fully_deflected_if_a_run_begins_in_motion() {
     }
 }
 
-/// With a law in newtons only the dry part deflects: with Coulomb's law it is Dahl's, exponent 1.
+/// With a law in newtons, only dry friction deflects; with Coulomb's law, the result is Dahl's law
+/// with the exponent 1.
 #[test]
 fn presliding_with_coulombs_law_equals_dahls_law() {
     let (kinetic_n, stiffness_n_m, viscous_n_s_m) = (6.0, 3e4, 400.0);
@@ -112,9 +115,9 @@ fn presliding_with_coulombs_law_equals_dahls_law() {
     }
 }
 
-/// For a reversal within a step the zero is found by linear interpolation between the speeds.
+/// A reversal within a step is at the zero of the linearly interpolated speed.
 ///
-/// Only the distance slid after it deflects the bristles backward.
+/// Only the distance after this instant deflects the bristles backward.
 #[test]
 fn reversal_within_a_step_is_at_the_zero_of_the_interpolated_speed() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);

@@ -1,4 +1,4 @@
-//! A force `c v |v|` in addition to that of the bearing, independent of the load.
+//! Tests that a force `c v |v|` is added to that of the bearing, independent of the load.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;

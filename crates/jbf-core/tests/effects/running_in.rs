@@ -1,4 +1,4 @@
-//! Only the friction of the contact runs in, exponentially in the distance slid.
+//! Tests that only the dry friction of the contact decays, exponentially in the sliding distance.
 
 use crate::common::motion::constant;
 use crate::common::{chain_round, newtons, readings};
@@ -23,7 +23,7 @@ fn dry_friction_decays_exponentially_with_the_distance_slid() {
     }
 }
 
-/// Both directions count, and a rest does not.
+/// The distance of both directions is added, and a rest does not change it.
 ///
 /// The speed is a triangle with its corners and zeros at samples, so that the distance is a
 /// parabola.

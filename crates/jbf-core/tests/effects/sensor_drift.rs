@@ -1,4 +1,5 @@
-//! The reading is the force plus a linear function of time that is zero at the start of the run.
+//! Tests that the reading is the force plus a linear function of time, which is zero at the start
+//! of the run.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;

@@ -1,4 +1,5 @@
-//! Play in the force path: two branches at a distance of 2 w, and a level between them.
+//! Tests of the hysteresis of a load cell: two branches that differ by 2 w, and constant readings
+//! between them.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
@@ -15,7 +16,7 @@ fn smooth<T: Real>(force_n: T) -> Signal<T> {
     }
 }
 
-/// Readings of a cell with this play for a sequence of forces.
+/// Readings of a load cell with a hysteresis of this half width for a sequence of forces, N.
 fn read<T: Real>(half_width_n: T, forces_n: &[T]) -> Vec<T> {
     let cell = SensorHysteresis::new(&[half_width_n]).expect("within bounds");
     let rig = Rig {
@@ -30,10 +31,10 @@ fn read<T: Real>(half_width_n: T, forces_n: &[T]) -> Vec<T> {
     found
 }
 
-/// Viscous friction of a speed that rises, falls below zero and rises again.
+/// The test motion has a speed that rises, falls below zero and rises again, with viscous friction.
 ///
-/// The reading follows the branch F - w, then stays constant from a peak until the force is 2 w
-/// lower, then follows the branch F + w.
+/// The reading follows the branch F - w, is constant from a peak until the force is 2 w lower, and
+/// then follows the branch F + w.
 #[test]
 fn reading_follows_the_branches_and_is_constant_within_the_gap() {
     let (w, slope, n) = (0.4, 40.0, 628);
@@ -60,10 +61,10 @@ fn reading_follows_the_branches_and_is_constant_within_the_gap() {
     assert!(touched > 20, "the level is {touched} samples long");
 }
 
-/// After a jump larger than the gap the reading is closer to zero than the force by w, from the
-/// sample of the jump on.
+/// After a jump larger than the width of the hysteresis, the reading is closer to zero than the
+/// force by w, from the sample of the jump on.
 #[test]
-fn jump_larger_than_the_gap_is_followed_at_its_sample() {
+fn reading_follows_a_jump_larger_than_the_hysteresis_at_its_sample() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
     let chain = chain_round(ConstantLaw(f), &[("sensor_hysteresis", &[w])]);
     let speed = |t: f64| match (t / dt).round() as i32 {
@@ -88,7 +89,7 @@ fn jump_larger_than_the_gap_is_followed_at_its_sample() {
     }
 }
 
-/// A single sample at zero speed, where the friction is zero, does not move the reading afterwards.
+/// A single sample at zero speed, where the friction is zero, does not change later readings.
 #[test]
 fn sample_at_zero_speed_does_not_change_the_readings_of_the_other_samples() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
@@ -101,9 +102,10 @@ fn sample_at_zero_speed_does_not_change_the_readings_of_the_other_samples() {
     }
 }
 
-/// A change smaller than the gap is not visible, and the reading never differs by more than w.
+/// A change smaller than the width 2 w does not change the reading, whose difference from the force
+/// is at most w.
 #[test]
-fn change_smaller_than_the_gap_is_not_read() {
+fn change_smaller_than_the_hysteresis_does_not_change_the_reading() {
     let ripple: Vec<f64> = (0..200)
         .map(|i| 5.0 + 0.3 * (0.1 * f64::from(i)).sin())
         .collect();
@@ -115,7 +117,7 @@ fn change_smaller_than_the_gap_is_not_read() {
     }
 }
 
-/// The effect is rate-independent and odd.
+/// The hysteresis is rate-independent and odd.
 ///
 /// The same forces at any rate give the same readings, and opposite forces give opposite readings.
 #[test]
@@ -136,10 +138,10 @@ fn hysteresis_is_rate_independent_and_odd() {
     }
 }
 
-/// At zero width the derivative is that of the force.
+/// At zero width, the derivative with respect to the force is that of the force itself.
 ///
-/// The derivative with respect to the width is that of the branch on which the force moves. This
-/// also holds where the force is constant and only its derivative continues.
+/// The derivative with respect to the width is that of the branch on which the force last moved.
+/// This is also true while the force is constant and only its derivative changes.
 #[test]
 fn derivative_at_zero_width_is_that_of_the_branch() {
     let w = Dual::<2>::parameter(0.0, 0);
@@ -167,9 +169,9 @@ fn derivative_at_zero_width_is_that_of_the_branch() {
     }
 }
 
-/// At a positive width the derivative is that of the moving end of the gap.
+/// At a positive width, the derivative is that of the branch while the reading follows the force.
 ///
-/// Between the ends the derivative is held.
+/// The derivative is constant while the reading is constant.
 #[test]
 fn derivative_at_positive_width_is_that_of_the_moving_end() {
     let w = Dual::<2>::parameter(0.5, 0);
@@ -191,7 +193,7 @@ fn derivative_at_positive_width_is_that_of_the_moving_end() {
     }
 }
 
-/// The force passes the play before the nonlinearity of the cell.
+/// Hysteresis acts before the nonlinearity of the load cell.
 ///
 /// The branches of a nonlinear cell are the transformed branches of the linear one.
 #[test]

@@ -1,10 +1,11 @@
-//! A first-order low-pass filter, compared with its response to a step and to a sine.
+//! Tests of a first-order low-pass filter against its responses to a step and to a ramp.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain, chain_round, readings, LOAD_N};
 
-/// The force jumps between two samples; the filter treats it as a ramp over that step.
+/// The response to a jump of the force between two samples is exponential, because the filter
+/// treats it as a ramp over the step.
 ///
 /// The ideal jump is at the middle of the ramp. The two responses differ by (dt/tau)^2/24.
 #[test]
@@ -29,10 +30,10 @@ fn response_to_a_step_between_samples_is_exponential() {
     }
 }
 
-/// If a sample is at the reversal itself, the jump of the force is at that sample.
+/// The response to a jump of the force at a sample, such as a reversal at a sample, is exact except
+/// for rounding.
 ///
-/// The response is then the ideal one except for rounding. The same applies to the start and end of
-/// a motion.
+/// This also applies to the start and end of a motion.
 #[test]
 fn response_to_a_jump_at_a_sample_is_exact() {
     let (f, tau, dt) = (0.1, 0.3, 0.05);
@@ -53,7 +54,7 @@ fn response_to_a_jump_at_a_sample_is_exact() {
     }
 }
 
-/// A lag shorter than any step is a shift by tau, not noise: r = F - tau F'.
+/// A lag much shorter than a step shifts the reading by tau: r = F - tau F'.
 #[test]
 fn lag_shorter_than_a_step_shifts_the_reading() {
     let (tau, dt) = (1e-7, 0.01);
@@ -68,7 +69,7 @@ fn lag_shorter_than_a_step_shifts_the_reading() {
     }
 }
 
-/// A lag longer than the run hardly changes the first reading.
+/// A lag much longer than the run hardly changes the first reading.
 #[test]
 fn lag_longer_than_the_run_holds_the_first_reading() {
     let sines = Sines::one_way(1.0);

@@ -1,4 +1,4 @@
-//! A cell characteristic with a cubic term, compared with forces whose cube is known.
+//! Tests of a load cell with a cubic term against forces whose cube is known.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;
@@ -29,9 +29,8 @@ fn cubic_term_is_added_to_every_reading() {
     }
 }
 
-/// Both sides of a jump are transformed before the filter.
-///
-/// A nonlinear cell with lag settles at the transformed force.
+/// The nonlinearity acts before lag and offset: both sides of a jump are transformed, and a load
+/// cell with lag settles at the transformed force.
 #[test]
 fn nonlinearity_acts_before_lag_and_offset() {
     let (f, c, b, tau, dt) = (0.1, 5e-3, 0.7, 0.3, 0.05);
@@ -93,7 +92,7 @@ fn derivatives_are_those_of_the_characteristic_on_both_sides_of_its_turning_poin
     assert_eq!(r.slope[1], 0.0);
 }
 
-/// Each instant within a step is transformed separately.
+/// The force at each instant within a step is transformed separately.
 #[test]
 fn nonlinearity_transforms_each_instant_of_a_step_separately() {
     let cell = SensorNonlinearity::new(&[0.01]).expect("within bounds");

@@ -1,4 +1,4 @@
-//! The reading is the force plus a constant, from the first sample on and also at rest.
+//! Tests that the reading is the force plus a constant, from the first sample on and also at rest.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;

@@ -1,10 +1,11 @@
-//! The effective film speed is `U / (1 + (|U|/U_c)^n)`: half the speed at U_c for every n.
+//! Tests that the effective speed of the film is `U / (1 + (|U|/U_c)^n)`, which is half the speed
+//! at U_c for every n.
 
 use crate::common::chain_round;
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
 
-/// Effective film speed at the journal speed `speed`, m/s.
+/// Effective speed of the film at the speed of the journal, m/s.
 fn felt(u_c: f64, n: f64, speed: f64) -> f64 {
     let chain = chain_round(ConstantLaw(0.1), &[("shear_thinning", &[u_c, n])]);
     let mut state = chain.start(&constant(speed, 0.0));

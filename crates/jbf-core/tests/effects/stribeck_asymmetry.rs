@@ -1,4 +1,4 @@
-//! `+ c exp(-(|v|/v_s)^n)`: different levels in the two directions at low speed only.
+//! Tests of `+ c exp(-(|v|/v_s)^n)`: the friction of the two directions differs at low speed only.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -22,7 +22,8 @@ fn peak_is_raised_in_one_direction_and_lowered_in_the_other() {
     }
 }
 
-/// If the peak exceeds the level, friction in the other direction is zero and never drives.
+/// Friction in the direction with the lower peak is zero, not negative, if the peak exceeds the dry
+/// friction.
 #[test]
 fn friction_never_drives_if_the_peak_exceeds_the_level() {
     let sines = Sines::two_way(1.0);
@@ -35,7 +36,7 @@ fn friction_never_drives_if_the_peak_exceeds_the_level() {
     assert!((1..got.len()).filter(|&i| back(i)).all(|i| got[i] == 0.0));
 }
 
-/// At rest, where both directions are possible, neither peak is present.
+/// The friction level at rest is unchanged, because both directions are possible.
 #[test]
 fn holding_level_at_rest_is_unchanged() {
     let chain = chain_round(

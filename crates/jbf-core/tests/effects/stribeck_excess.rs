@@ -1,4 +1,4 @@
-//! Friction is higher by `a exp(-(|v|/v_s)^n)` at low speed, equally in both directions.
+//! Tests that friction is higher by `a exp(-(|v|/v_s)^n)` at low speed, equally in both directions.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;

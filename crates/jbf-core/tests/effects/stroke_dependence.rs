@@ -1,4 +1,4 @@
-//! Dry friction times `1 + s(x)`: Fourier terms over the stroke, written here by their angles.
+//! Tests of dry friction multiplied by `1 + s(x)`, against Fourier terms over the stroke.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -10,7 +10,7 @@ const F_V_N_S_M: f64 = 40.0;
 const MIDDLE_M: f64 = 0.1;
 const HALF_M: f64 = 0.1;
 
-/// The dry level relative to its mean, at `x` m.
+/// Dry friction at the position `x` (m) relative to its mean.
 fn share(a: [f64; 6], x: f64) -> f64 {
     let u = ((x - MIDDLE_M) / HALF_M).clamp(-1.0, 1.0);
     let waves = [
@@ -48,14 +48,14 @@ fn dry_level_depends_on_the_position_but_viscous_friction_does_not() {
     }
 }
 
-/// The level that holds a drive at rest at a position, N.
+/// Friction level that holds a drive at rest at the position `x` (m), N.
 fn level_n(a: [f64; 6], x: f64) -> f64 {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("stroke_dependence", &values(a))]);
     let state = chain.start(&held::<f64>(x / Bearing::THESIS.radius_m, 0.0));
     chain.felt(&state).jump
 }
 
-/// The terms are orthogonal to the dry level and to each other.
+/// The terms have zero mean and are orthogonal to each other over the stroke.
 #[test]
 fn terms_have_zero_mean_and_are_orthogonal() {
     let n = 2000;
@@ -74,7 +74,7 @@ fn terms_have_zero_mean_and_are_orthogonal() {
     }
 }
 
-/// There is neither a step nor a corner at the ends.
+/// Dry friction and its slope are continuous at the ends of the stroke.
 #[test]
 fn level_and_slope_are_continuous_at_the_ends_of_the_stroke() {
     let a = [0.3, -0.2, 0.05, 0.1, -0.07, 0.04];
@@ -89,7 +89,7 @@ fn level_and_slope_are_continuous_at_the_ends_of_the_stroke() {
     assert!((level_n(a, MIDDLE_M + h) - level_n(a, MIDDLE_M - h)).abs() > 1e-5);
 }
 
-/// If the terms would make friction negative, it is zero.
+/// Dry friction is zero at positions where the terms would make it negative.
 #[test]
 fn level_is_zero_if_the_terms_would_make_it_negative() {
     assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0), 0.0);

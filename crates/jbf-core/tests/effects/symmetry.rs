@@ -1,4 +1,4 @@
-//! A mirrored motion gives the mirrored friction of the mirrored machine.
+//! Tests that a mirrored motion has the mirrored friction of the mirrored machine.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
@@ -6,7 +6,8 @@ use crate::common::{chain, readings};
 use jbf_core::effect::{Info, CATALOGUE};
 use jbf_core::page::Mirror;
 
-/// Parameters of the mirrored machine. Few effects depend on the direction; their pages state it.
+/// Parameters of the mirrored machine; the description of a parameter states whether its sign
+/// changes.
 fn mirrored(info: &Info, values: &[f64]) -> Vec<f64> {
     let turned = info.parameters.iter().zip(values);
     turned
@@ -40,7 +41,8 @@ fn mirrored_motion_gives_mirrored_friction_with_every_effect() {
     }
 }
 
-/// Without a mirrored theta_0 the ripple is not odd: the exception is necessary.
+/// Without a mirrored theta_0, the friction with a ripple is not odd, so the change of sign is
+/// necessary.
 #[test]
 fn ripple_is_not_odd_unless_its_phase_is_mirrored() {
     let rippled = chain::<f64>(&[("position_ripple", &[0.5, 1.0])]);

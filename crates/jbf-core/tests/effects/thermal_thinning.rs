@@ -1,4 +1,5 @@
-//! At constant friction power the oil's log viscosity finally falls by `beta q tau P`.
+//! Tests that the logarithm of the viscosity finally falls by `beta q tau P` at a constant friction
+//! power P.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
@@ -27,9 +28,10 @@ fn temperature_rise_follows_its_closed_form() {
     }
 }
 
-/// Thinner oil does not change the coefficient directly.
+/// The steady friction of a warm film is that of the unchanged film at a lower speed, the effective
+/// speed.
 ///
-/// The steady point moves down the Stribeck curve to the effective speed of the film.
+/// The coefficient does not depend on the viscosity in any other way.
 #[test]
 fn warm_film_has_the_steady_friction_of_a_lower_speed() {
     use crate::common::{chain, law};

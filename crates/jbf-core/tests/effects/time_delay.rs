@@ -1,10 +1,10 @@
-//! A pure delay: the same signal, later.
+//! Tests of a pure delay of the recorded force.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain, chain_round, readings, LOAD_N};
 
-/// A delay of whole steps shifts the bare readings by this number of steps.
+/// A delay of whole steps shifts the readings by this number of steps.
 #[test]
 fn delay_of_whole_steps_shifts_the_readings() {
     let sines = Sines::two_way(1.0);
@@ -21,7 +21,7 @@ fn delay_of_whole_steps_shifts_the_readings() {
     }
 }
 
-/// For a delay below one step the reading is interpolated linearly between the neighbours.
+/// For a delay below one step, the reading is interpolated linearly between the adjacent samples.
 #[test]
 fn delay_below_one_step_interpolates_between_neighbours() {
     let sines = Sines::one_way(1.0);
@@ -53,9 +53,7 @@ fn delayed_jump_is_not_smoothed() {
     }
 }
 
-/// The delay acts after the low-pass filter and before the zero offset of the load cell.
-///
-/// Filter and delay commute.
+/// Delay and low-pass filter commute, and both act before the offset of the load cell.
 #[test]
 fn delay_and_lag_commute() {
     let sines = Sines::one_way(1.0);

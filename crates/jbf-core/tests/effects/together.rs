@@ -1,4 +1,5 @@
-//! Combinations of effects: two that can be composed by hand, every pair, and all at once.
+//! Tests of combinations of effects: two whose combination has a closed form, every pair, and all
+//! at once.
 
 use crate::common::motion::Sines;
 use crate::common::{chain, chain_round, company, law, readings};
@@ -11,7 +12,8 @@ fn starts(info: &Info) -> Vec<f64> {
     info.parameters.iter().map(|p| p.starts[0]).collect()
 }
 
-/// Readings with effects at their starting values, and further effects that some of them require.
+/// Readings with the effects `which` at their starting values and the effects `beside`, which some
+/// of them require.
 fn run<T: Real>(which: &[&Info], beside: &[(&str, &[f64])]) -> Vec<T> {
     let values: Vec<Vec<f64>> = which.iter().map(|info| starts(info)).collect();
     let effects: Vec<(&str, &[f64])> = which
@@ -24,7 +26,7 @@ fn run<T: Real>(which: &[&Info], beside: &[(&str, &[f64])]) -> Vec<T> {
     readings(&chain::<T>(&effects), 0.01, 700, |t| sines.under(83.5, t))
 }
 
-/// The instrument acts after the drag.
+/// The instrument acts after the drag on the force.
 ///
 /// A low-pass filter, implemented here, of the force with drag equals the chain with both effects.
 #[test]
@@ -54,9 +56,9 @@ fn lag_of_the_instrument_filters_the_force_with_drag() {
     }
 }
 
-/// The order of effects in the chain does not depend on the order in which they are named.
+/// The order in which two effects are named does not change the readings.
 ///
-/// Neither effect of a pair is lost.
+/// The order in the chain is fixed, and both effects act.
 #[test]
 fn order_of_names_of_two_effects_does_not_change_the_readings() {
     for (i, a) in CATALOGUE.iter().enumerate() {
@@ -80,7 +82,7 @@ fn order_of_names_of_two_effects_does_not_change_the_readings() {
     }
 }
 
-/// Readings with every effect that is compatible with a law.
+/// Readings with every effect that is compatible with a law, all at once.
 fn all_round<T: Real, L: Named<T>>(law: L) -> Vec<T> {
     let page = law::CATALOGUE.iter().find(|page| page.name == L::INFO.name);
     let page = page.expect("a law of the catalogue");
@@ -110,7 +112,7 @@ fn all_effects_together_are_finite_and_agree_in_both_precisions() {
     agree(&all_round(dry::<f64>()), &all_round(dry::<f32>()));
 }
 
-/// Dry friction in newtons with a viscous part.
+/// Law in newtons with dry and viscous friction.
 fn dry<T: Real>() -> Coulomb<T> {
     let values = [6.0, 6.0, 20.0].map(T::of);
     Coulomb::build(None, None, &values, Clock::Journal).expect("a sound law")

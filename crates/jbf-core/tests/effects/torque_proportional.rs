@@ -1,4 +1,5 @@
-//! Gears under a weight and a mass lose a share of the transmitted force in both power directions.
+//! Tests of a gear that carries a weight and a mass: friction is a fraction of the transmitted
+//! force in both directions of power flow.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -8,14 +9,14 @@ const WEIGHT: [f64; 2] = [30.0, 0.4];
 const MASS_KG: f64 = 50.0;
 const SHARE: f64 = 0.2;
 
-/// Transmitted force at a time of the sine, N.
+/// Transmitted force at a time of the sinusoidal motion, N.
 fn carried_n(t: f64) -> f64 {
     let theta = 10.0 * (1.0 - t.cos());
     WEIGHT[0] * (theta - WEIGHT[1]).sin() + MASS_KG * 0.127 * t.cos()
 }
 
 #[test]
-fn loss_is_a_share_of_the_transmitted_force_in_both_directions() {
+fn loss_is_a_fraction_of_the_transmitted_force_in_both_directions() {
     let sines = Sines::two_way(1.0);
     let chain = chain_round(
         newtons(F_C_N, 0.0),
@@ -44,7 +45,8 @@ fn loss_is_a_share_of_the_transmitted_force_in_both_directions() {
     assert!(drives > 200 && driven > 200, "{drives} {driven}");
 }
 
-/// At rest the drive holds up to the sum of both levels; a share of 1 locks it against its weight.
+/// At rest, the drive holds up to the sum of both friction levels; with a fraction of 1, it is
+/// self-locking.
 #[test]
 fn holding_level_at_rest_grows_with_the_transmitted_force() {
     for share in [0.0, 0.5, 1.0] {
@@ -59,7 +61,7 @@ fn holding_level_at_rest_grows_with_the_transmitted_force() {
     }
 }
 
-/// Drag is not transmitted.
+/// Drag is not a transmitted force.
 #[test]
 fn drag_is_not_transmitted() {
     let sines = Sines::two_way(1.0);
@@ -94,7 +96,7 @@ fn constant_weight_on_an_inclined_axis_adds_to_the_transmitted_force() {
     }
 }
 
-/// With a bristle this level also deflects: after a reversal it rises as the law's own does.
+/// With presliding, this friction deflects after a reversal like the dry friction of the law.
 #[test]
 fn loss_is_deflected_by_presliding_like_dry_friction() {
     let sines = Sines::two_way(1.0);

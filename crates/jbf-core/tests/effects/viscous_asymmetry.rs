@@ -1,4 +1,5 @@
-//! Viscous friction `F_v v + b |v|`: different slopes by direction; the dry level is unchanged.
+//! Tests of viscous friction `F_v v + b |v|`: the slope depends on the direction, and dry friction
+//! is unchanged.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,4 @@
-//! A term `c L v` in addition to the viscous slope.
+//! Tests that a force `c L v` is added to the viscous friction of the law.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,4 @@
-//! A viscous slope with Vogel's relation, `F_v exp(B/(T - C) - B/(T_0 - C))`.
+//! Tests of viscous friction with Vogel's relation, `F_v exp(B/(T - C) - B/(T_0 - C))`.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,5 +1,5 @@
-//! Viscous friction `F_v v / (1 + w |v|)`: half of the straight line at `1/w`; the dry level is
-//! unchanged.
+//! Tests of viscous friction `F_v v / (1 + w |v|)`, which is half of the linear value at `1/w`; dry
+//! friction is unchanged.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

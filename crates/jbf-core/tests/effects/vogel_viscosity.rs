@@ -1,4 +1,5 @@
-//! Vogel's relation compared with that of ASTM D341 (Walther), and a warm film with thinner oil.
+//! Tests of Vogel's relation against that of ASTM D341 (Walther), and of a warm film against one
+//! with thinner oil.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
@@ -9,7 +10,7 @@ use jbf_core::{Bearing, Clock, Motion};
 const C_C: f64 = -95.0;
 const REFERENCE_C: f64 = 40.0;
 
-/// Factor of the viscosity at a temperature.
+/// Factor on the viscosity at a temperature, from a run.
 fn factor(b_k: f64, celsius: f64) -> f64 {
     let effect: [(&str, &[f64]); 1] = [("vogel_viscosity", &[b_k, C_C, REFERENCE_C])];
     let chain = chain_round(ConstantLaw(0.1), &effect);
@@ -28,10 +29,10 @@ fn viscosity_factor_follows_vogels_equation() {
     assert_eq!(factor(900.0, REFERENCE_C), 1.0);
 }
 
-/// Vogel's relation agrees with Walther's within a few per cent.
+/// Vogel's relation agrees with Walther's within 3 %.
 ///
 /// The oil has 46 mm^2/s at 40 C and 6.8 mm^2/s at 100 C. The reference is `log log (nu + 0.7) = A
-/// - B log T` (ASTM D341) between and about these temperatures.
+/// - B log T` (ASTM D341) at temperatures in this range and close to it.
 #[test]
 fn viscosity_of_a_grade_46_oil_agrees_with_walther_within_3_percent() {
     let walther = |celsius: f64| {

@@ -1,4 +1,4 @@
-//! A drive that begins cold: all friction times `1 + a exp(-t/tau)`, in motion or at rest.
+//! Tests of warm-up: friction multiplied by `1 + a exp(-t/tau)`, in motion and at rest.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -23,7 +23,7 @@ fn friction_decays_exponentially_with_time() {
     }
 }
 
-/// Time at rest counts as well, in contrast to running-in over the distance slid.
+/// Friction also decays at rest, in contrast to running-in, which depends on the sliding distance.
 #[test]
 fn friction_decays_also_during_a_rest() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("warm_up", &[0.5, 3.0])]);

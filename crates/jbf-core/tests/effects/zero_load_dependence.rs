@@ -1,4 +1,4 @@
-//! A force `k L` in addition to friction, independent of the direction and also at rest.
+//! Tests that a force `k L` is added to friction, independent of the direction and also at rest.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -6,7 +6,7 @@ use crate::common::{chain_round, newtons, readings};
 const F_C_N: f64 = 6.0;
 
 #[test]
-fn force_includes_a_share_of_the_load_also_at_rest() {
+fn force_includes_a_fraction_of_the_load_also_at_rest() {
     let sines = Sines::two_way(1.0);
     for k in [0.01, -0.4] {
         let chain = chain_round(newtons(F_C_N, 0.0), &[("zero_load_dependence", &[k])]);

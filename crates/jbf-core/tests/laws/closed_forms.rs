@@ -1,4 +1,4 @@
-//! Each law compared with a closed form.
+//! Tests of each law against a closed form.
 
 use super::support::{along, axis, in_newtons, moving, sine, starts};
 use jbf_core::effect::Effects;
@@ -6,7 +6,8 @@ use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::{steady_n, Named};
 use jbf_core::Clock;
 
-/// A long slide at one speed ends on the steady curve, for every law and in both directions.
+/// Friction after a long slide at constant speed equals the steady friction, for every law and in
+/// both directions.
 #[test]
 fn friction_after_a_long_slide_is_on_the_steady_curve() {
     for law in in_newtons() {
@@ -64,9 +65,8 @@ fn steady_stribeck_friction_equals_its_formula() {
     }
 }
 
-/// After a reversal Dahl's force follows the closed form in the distance slid.
-///
-/// This holds for every speed and step.
+/// The force of Dahl's law after a reversal follows its closed form in the sliding distance, for
+/// every speed and step.
 #[test]
 fn dahl_friction_after_a_reversal_follows_its_closed_form() {
     let (fc, sigma) = (8.0, 2e5);
@@ -105,8 +105,8 @@ fn dahl_friction_after_a_reversal_follows_its_closed_form() {
     }
 }
 
-/// LuGre at constant speed from rest: `sigma_0 z = level (1 - exp(-sigma_0 s/level))`, plus
-/// damping.
+/// The force of the LuGre law at constant speed from rest is `sigma_0 z = level (1 - exp(-sigma_0
+/// s/level))`, plus damping.
 #[test]
 fn lugre_friction_from_rest_follows_its_closed_form() {
     let (fc, fs, vs, s0, s1, vd, fv): (f64, f64, f64, f64, f64, f64, f64) =
@@ -129,7 +129,7 @@ fn lugre_friction_from_rest_follows_its_closed_form() {
     }
 }
 
-/// Static friction holds a slider behind a compliant drive up to F_s; then it slides at F_c.
+/// Static friction holds a journal with a compliant drive up to F_s; then it slides with F_c.
 #[test]
 fn coulomb_friction_behind_a_compliant_drive_sticks_to_f_s_and_slides_at_f_c() {
     let law = <Coulomb<f64> as Named<f64>>::build(None, None, &[6.0, 9.0, 0.0], Clock::Journal)
@@ -164,9 +164,9 @@ fn coulomb_friction_behind_a_compliant_drive_sticks_to_f_s_and_slides_at_f_c() {
     assert!((broke_at - 0.9).abs() < 0.02, "{broke_at}");
 }
 
-/// Under a rigid drive the static friction of the Coulomb law is not observable.
+/// The static friction of Coulomb's law has no influence with a rigid drive.
 ///
-/// A reversal without dwell is not a rest.
+/// A reversal without a stop is not a rest.
 #[test]
 fn coulomb_static_friction_has_no_influence_under_a_rigid_drive() {
     let there = along::<f64>("coulomb", &[6.0, 9.0, 1.0], 0.01, 500, sine(0.05, 2.0));

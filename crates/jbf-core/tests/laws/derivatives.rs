@@ -1,14 +1,14 @@
-//! Derivatives from dual numbers compared with central differences, for every parameter of every
+//! Tests of derivatives from dual numbers against central differences, for every parameter of every
 //! law.
 //!
 //! The instants of breakaway move with the parameters from one step to the next, so a few samples
-//! there have no difference quotient.
+//! next to them are excluded.
 
 use super::support::{along, in_newtons, sine, starts};
 use jbf_core::{Dual, Real};
 
-/// The delay of the seven-parameter model, where a slope has a kink, is not a multiple of this
-/// step.
+/// Time step, s; the delay of the seven-parameter model, at which a slope has a kink, is not a
+/// multiple of it.
 const DT_S: f64 = 1.1e-3;
 const STEPS: u32 = 4000;
 

@@ -1,4 +1,4 @@
-//! The elasto-plastic law: its closed form, and the absence of drift.
+//! Tests of the elasto-plastic law: its closed form, and the absence of drift below breakaway.
 
 use super::support::{along, axis, gap, moving, sine};
 use jbf_core::effect::Effects;
@@ -10,9 +10,7 @@ const F_C: f64 = 8.0;
 const SIGMA: f64 = 2e5;
 const SPEED: f64 = 0.01;
 
-/// After a reversal the force is a straight line to the breakaway, then an exponential.
-///
-/// This holds for every step.
+/// After a reversal, the force is linear up to breakaway and then exponential, for every step.
 #[test]
 fn friction_after_a_reversal_follows_its_closed_form() {
     for share in [0.0, 0.3, 0.7, 0.999] {
@@ -41,10 +39,10 @@ fn friction_after_a_reversal_follows_its_closed_form() {
     }
 }
 
-/// Drift of the force under small swings.
+/// Change of the force after many small oscillations of the position, N.
 ///
-/// The position creeps up to a force and then oscillates; each swing returns to the same position.
-/// Returns the change of the force after many swings.
+/// The position first moves until the force has the given level, and each oscillation returns to
+/// this position.
 fn drift(name: &str, values: &[f64], level: f64) -> f64 {
     let (reach, swing) = (level * F_C / SIGMA, 0.1 * F_C / SIGMA);
     let omega = std::f64::consts::TAU;
@@ -79,14 +77,15 @@ fn swings_below_the_breakaway_cause_no_drift() {
     }
 }
 
-/// Beyond the breakaway the model drifts: its known limitation.
+/// Oscillations beyond breakaway cause drift, a known limitation of the model.
 #[test]
 fn swings_beyond_the_breakaway_cause_drift() {
     let own = drift("elasto_plastic", &[F_C, SIGMA, 0.3, 0.0], 0.9);
     assert!(own > 0.01 * F_C, "{own}");
 }
 
-/// With a breakaway close to the level it is a spring and a slider; if very stiff, Coulomb's law.
+/// With a breakaway force close to F_c, the law is a spring with a slider; with a large stiffness,
+/// it is Coulomb's law.
 #[test]
 fn stiff_law_equals_coulombs_law_and_breakaway_near_the_level_a_spring_with_slider() {
     let (dt, steps) = (2.03e-3, 3000);
@@ -104,9 +103,10 @@ fn stiff_law_equals_coulombs_law_and_breakaway_near_the_level_a_spring_with_slid
     assert!(gap(&stiff, &rigid) < 1e-9, "{}", gap(&stiff, &rigid));
 }
 
-/// `z' = v (1 - alpha sgn(v) z/z_ss)` with the documented alpha, in steps a thousand times finer.
+/// Friction under a varying load follows `z' = v (1 - alpha sgn(v) z/z_ss)`, integrated in steps a
+/// thousand times shorter.
 ///
-/// A varying load changes the level: the law is combined with `dry_load_dependence`.
+/// The effect `dry_load_dependence` makes the friction level depend on the load.
 #[test]
 fn friction_under_a_varying_load_follows_its_differential_equation() {
     let (share, mu) = (0.6, 0.4);

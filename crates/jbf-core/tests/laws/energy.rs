@@ -1,9 +1,10 @@
-//! Friction dissipates work over every closed loop.
+//! Tests that friction dissipates work over every closed loop.
 
 use super::support::{along, anywhere, in_newtons, sine};
 use crate::common::random::Random;
 
-/// Work (J) over the last period of a sinusoidal position.
+/// Work (J) over the last period of a sinusoidal position, and the sum of its absolute values in
+/// the steps (J).
 fn loop_work(name: &str, values: &[f64], amplitude_m: f64) -> (f64, f64) {
     let omega = 2.0;
     let steps = 2000;
@@ -21,7 +22,7 @@ fn loop_work(name: &str, values: &[f64], amplitude_m: f64) -> (f64, f64) {
     (work, size)
 }
 
-/// True if a law is passive at these parameters.
+/// Returns true if a law is passive with these parameters.
 ///
 /// LuGre is passive if `sigma_1(v) |v| < 4 sigma_0 g(v)` at every speed (Olsson 1996). The maximum
 /// of the left side, at `v_d/sqrt(2)`, is decisive.
@@ -51,7 +52,7 @@ fn closed_loop_dissipates_work_for_passive_laws() {
     }
 }
 
-/// Dahl's loop in sliding is nearly the rectangle 4 F_c A.
+/// The work of Dahl's law over a wide loop is nearly that of a rectangle, 4 F_c A.
 #[test]
 fn work_of_a_wide_dahl_loop_is_that_of_a_rectangle() {
     let (work, _) = loop_work("dahl", &[8.0, 1e8, 1.0, 0.0], 0.05);

@@ -1,6 +1,6 @@
-//! No law gives a NaN or an infinity for any parameters within the bounds.
+//! Tests that the friction of any law is finite for any parameters within the bounds.
 //!
-//! A value outside the bounds is rejected with its name.
+//! A value outside the bounds is refused with the name of its parameter.
 
 use super::support::{along, anywhere, in_newtons, moving, starts};
 use crate::common::motion::Sines;
@@ -10,7 +10,7 @@ use jbf_core::law::{steady_n, with_law, Named, Visitor, CATALOGUE};
 use jbf_core::{Clock, Dual, Motion, Real};
 use std::cell::RefCell;
 
-/// An unrealistic motion with jumps of speed and position.
+/// Unrealistic motion with jumps of speed and position.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
     Motion::at_rest(T::ONE)
@@ -67,7 +67,8 @@ fn every_law_has_finite_derivatives() {
     );
 }
 
-/// Distances and speeds so small that their products with the law's parameters round to zero.
+/// The friction of every law is finite for distances and speeds whose products with the parameters
+/// round to zero.
 #[test]
 fn every_law_is_finite_at_subnormal_speeds() {
     for law in in_newtons() {

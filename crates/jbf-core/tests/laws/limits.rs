@@ -1,9 +1,10 @@
-//! Limits in which one law becomes another.
+//! Tests of limits in which one law becomes another.
 
 use super::support::{along, gap, sine};
 
 const STEPS: u32 = 3000;
-/// No sample is within a few deflections of a stiff bristle after a reversal.
+/// Time step, s, with which no sample is within a few deflections of a stiff bristle after a
+/// reversal.
 const DT_S: f64 = 2.03e-3;
 
 #[test]
@@ -44,7 +45,8 @@ fn stiff_seven_parameter_law_without_stribeck_effect_equals_coulombs_law() {
     assert!(gap(&seven, &rigid) < 2e-6, "{}", gap(&seven, &rigid));
 }
 
-/// With a Dahl exponent towards zero the law is a spring that slips: the elasto-plastic contact.
+/// As its exponent approaches zero, Dahl's law becomes a spring with a slider, as the
+/// elasto-plastic law.
 #[test]
 fn dahl_law_with_an_exponent_near_zero_is_a_spring_with_slider() {
     let dahl = along::<f64>("dahl", &[8.0, 1e5, 0.01, 0.0], DT_S, STEPS, sine(2e-4, 3.0));

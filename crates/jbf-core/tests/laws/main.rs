@@ -1,4 +1,4 @@
-//! The laws in newtons: rules for all laws of the catalogue, and closed forms for each.
+//! Tests of the laws in newtons: rules for all laws of the catalogue, and a closed form for each.
 
 #[path = "../common/mod.rs"]
 mod common;

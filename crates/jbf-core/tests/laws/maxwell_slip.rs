@@ -1,4 +1,4 @@
-//! Maxwell slip: the virgin curve, Masing's rules, and the memory of reversals.
+//! Tests of the Maxwell slip law: the virgin curve, Masing's rules, and the memory of reversals.
 
 use super::support::{along, axis, gap, moving, sine};
 use jbf_core::effect::Effects;
@@ -13,7 +13,8 @@ fn values(exponent: f64) -> [f64; 4] {
     [F_C, SIGMA, exponent, 0.0]
 }
 
-/// Forces at a sequence of positions (m), from a relaxed rest, with a smooth stroke to each.
+/// Forces (N) at a sequence of positions (m), starting at rest without deflection, with a smooth
+/// stroke to each position.
 fn at_places<T: jbf_core::Real>(name: &str, values: &[T], places: &[f64]) -> Vec<T> {
     const STEPS: u32 = 200;
     let mut whole = vec![0.0];
@@ -42,7 +43,7 @@ fn at_places<T: jbf_core::Real>(name: &str, values: &[T], places: &[f64]) -> Vec
         .collect()
 }
 
-/// Dahl's virgin curve, N.
+/// Virgin curve of Dahl's law, N.
 fn virgin(exponent: f64, place_m: f64) -> f64 {
     let s = SIGMA * place_m / F_C;
     let m = 1.0 - exponent;
@@ -52,9 +53,10 @@ fn virgin(exponent: f64, place_m: f64) -> f64 {
     F_C * (1.0 - (1.0 - m * s).max(0.0).powf(1.0 / m))
 }
 
-/// The elements follow the closed curve from above, within the share of F_c due to their number.
+/// The virgin curve of the elements is above that of Dahl's law, by at most the error due to the
+/// number of elements.
 #[test]
-fn virgin_curve_agrees_with_dahls_within_the_share_of_an_element() {
+fn virgin_curve_agrees_with_dahls_within_the_error_of_sixteen_elements() {
     let leaves = [
         (0.03, 0.011),
         (0.1, 0.008),
@@ -75,7 +77,7 @@ fn virgin_curve_agrees_with_dahls_within_the_share_of_an_element() {
     }
 }
 
-/// At a reversal every element sticks: the slope is sigma_0 for every shape.
+/// At a reversal every element sticks, so the slope is sigma_0 for every shape.
 #[test]
 fn stiffness_at_a_reversal_is_sigma_0() {
     for exponent in [0.01, 0.3, 1.0 - 1e-4, 1.0, 1.0 + 1e-4, 2.0] {
@@ -90,7 +92,8 @@ fn stiffness_at_a_reversal_is_sigma_0() {
     }
 }
 
-/// Masing: after a reversal at x_0, F_0 the force is `F_0 - 2 V((x_0 - x)/2)`, V the virgin curve.
+/// After a reversal at x_0, F_0, the force follows Masing's rule `F_0 - 2 V((x_0 - x)/2)`, with the
+/// virgin curve V.
 #[test]
 fn branch_after_a_reversal_follows_masings_rule() {
     for exponent in [0.1, 0.5, 1.0] {
@@ -112,7 +115,7 @@ fn branch_after_a_reversal_follows_masings_rule() {
 
 /// An inner loop closes at the point where it began, also within another loop.
 ///
-/// After it the force continues as without the loops. Dahl's law drifts.
+/// The force then continues as without the loops. Dahl's law drifts.
 #[test]
 fn inner_loops_close_and_leave_no_memory() {
     let unit = F_C / SIGMA;
@@ -135,7 +138,8 @@ fn inner_loops_close_and_leave_no_memory() {
     assert!(dahl.iter().all(|x| *x > 1e-3 * F_C), "{dahl:?}");
 }
 
-/// Inner loops also close in single precision, where positions of many reversals accumulate.
+/// Inner loops also close in single precision, although rounding errors of the position accumulate
+/// over many reversals.
 #[test]
 fn inner_loops_close_in_single_precision_after_50_reversals() {
     let unit = F_C / SIGMA;
@@ -149,7 +153,7 @@ fn inner_loops_close_in_single_precision_after_50_reversals() {
     assert!(f64::from(open) < 1e-3 * F_C, "{open}");
 }
 
-/// A load oscillating below F_c causes no ratchetting: each cycle equals the one before.
+/// A load that oscillates below F_c causes no ratchetting: each cycle equals the previous one.
 #[test]
 fn load_cycles_below_f_c_cause_no_ratchetting() {
     let unit = F_C / SIGMA;
@@ -163,9 +167,8 @@ fn load_cycles_below_f_c_cause_no_ratchetting() {
     }
 }
 
-/// If very stiff the law is Coulomb's; with a small exponent it is elasto-plastic.
-///
-/// The breakaway of that elasto-plastic law is its level.
+/// With a large stiffness the law is Coulomb's; with a small exponent it is the elasto-plastic law
+/// whose breakaway force is F_c.
 #[test]
 fn stiff_law_equals_coulombs_law_and_small_exponent_the_elasto_plastic_law() {
     let (dt, steps) = (2.03e-3, 3000);
@@ -183,10 +186,10 @@ fn stiff_law_equals_coulombs_law_and_small_exponent_the_elasto_plastic_law() {
     );
 }
 
-/// With `stribeck_excess` the law is GMS.
+/// With the effect `stribeck_excess` the law equals the generalised Maxwell slip law (GMS).
 ///
-/// The reference has explicit elements, each stuck or at its share of the current level, in steps a
-/// hundred times finer.
+/// The reference has explicit elements, each sticking or at its fraction of the present friction
+/// level, in steps a hundred times shorter.
 #[test]
 fn law_with_stribeck_excess_equals_generalised_maxwell_slip() {
     let (exponent, a, v_s) = (1.0, 3.0, 2e-4);
@@ -239,10 +242,10 @@ fn law_with_stribeck_excess_equals_generalised_maxwell_slip() {
     assert!(fine < 5e-3 * F_C && fine < 0.5 * coarse, "{coarse} {fine}");
 }
 
-/// The law follows the continuum that its elements approximate.
+/// Friction follows the continuous distribution of elements that the law approximates.
 ///
-/// The reference is Dahl's curve with Masing's rules and a stack of reversals, along a motion that
-/// reverses at many amplitudes.
+/// The reference is Dahl's virgin curve with Masing's rules and a stack of reversals, along a
+/// motion that reverses at many amplitudes.
 #[test]
 fn friction_follows_masings_rules_for_a_stack_of_reversals() {
     let exponent = 0.5;

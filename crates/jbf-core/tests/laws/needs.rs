@@ -1,4 +1,4 @@
-//! Compatibility of effects and laws.
+//! Tests of the compatibility of effects and laws.
 
 use jbf_core::effect::{self, Need};
 use jbf_core::law;

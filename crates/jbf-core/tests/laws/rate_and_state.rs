@@ -1,4 +1,5 @@
-//! The rate-and-state law: steady sliding, velocity steps, holds, and its regularisation.
+//! Tests of the rate-and-state law: steady sliding, steps of the speed, rests, and the
+//! regularisation at zero speed.
 
 use super::support::{along, gap, moving, sine};
 use jbf_core::law::rate_and_state::RateAndState;
@@ -16,7 +17,7 @@ fn law(values: [f64; 6]) -> RateAndState<f64> {
     RateAndState::build(None, None, &values, Clock::Journal).expect("valid")
 }
 
-/// Age of the contact for a force in sliding, from the equation of the law.
+/// Age of the contact (s) for a force in sliding, from the equation of the law.
 fn age_s(force: f64, speed: f64) -> f64 {
     D_C / V_0 * ((force - F_0 - A * (speed / V_0).ln()) / B).exp()
 }
@@ -53,7 +54,7 @@ fn friction_after_a_speed_step_jumps_by_a_and_settles_over_the_slip_distance() {
     }
 }
 
-/// At constant speed the age does not depend on the step.
+/// At constant speed, the age does not depend on the time step.
 #[test]
 fn age_at_constant_speed_does_not_depend_on_the_step() {
     for steps in [1, 3, 50] {
@@ -69,7 +70,8 @@ fn age_at_constant_speed_does_not_depend_on_the_step() {
     }
 }
 
-/// A contact at rest ages with the time; its breakaway force rises by b per e-fold.
+/// A contact at rest ages; its breakaway force rises by b if the duration of the rest increases by
+/// a factor of e.
 #[test]
 fn friction_after_a_rest_rises_with_the_logarithm_of_its_duration() {
     let law = law(VALUES);
@@ -104,7 +106,7 @@ fn friction_near_zero_speed_is_the_inverse_hyperbolic_sine() {
     }
 }
 
-/// Steps of a speed that changes linearly, with and without reversals, compared with short ones.
+/// Long steps with a linearly changing speed, with and without reversals, agree with short ones.
 #[test]
 fn long_steps_are_stable_and_accurate_to_a_quarter_of_b() {
     let law = law(VALUES);
@@ -141,7 +143,7 @@ fn law_without_both_effects_equals_coulombs_law() {
     assert!(gap(&own, &coulomb) < 1e-12, "{}", gap(&own, &coulomb));
 }
 
-/// Extreme ages and speeds within single precision.
+/// Friction is finite and not negative for extreme ages and speeds in single precision.
 #[test]
 fn friction_is_finite_and_not_negative_in_single_precision() {
     for a in [0.0_f32, 1e-30, 0.1, 1e7] {

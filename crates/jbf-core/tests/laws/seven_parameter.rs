@@ -1,4 +1,4 @@
-//! Dwell and delay of the seven-parameter model.
+//! Tests of rising static friction and frictional memory in the seven-parameter model.
 
 use super::support::{along, moving};
 
@@ -10,7 +10,7 @@ const TAU_L: f64 = 0.05;
 const GAMMA: f64 = 1.5;
 const VALUES: [f64; 7] = [K_T, F_C, 0.0, F_S, V_S, TAU_L, GAMMA];
 
-/// Slide, rest for `rest_s`, creep again; returns the largest force after the rest.
+/// Largest force after a rest of `rest_s` between two sliding motions, N.
 fn breakaway(rest_s: f64) -> f64 {
     let (dt, stop) = (1e-3, 1.0);
     let speed = |t: f64| {
@@ -30,9 +30,10 @@ fn breakaway(rest_s: f64) -> f64 {
     force[after..].iter().fold(0.0, |m: f64, &f| m.max(f))
 }
 
-/// Breakaway rises as `F_c + F_sa + (F_inf - F_sa) t/(t + gamma)`.
+/// The breakaway force rises with the duration t of the rest as `F_c + F_sa + (F_inf - F_sa) t/(t +
+/// gamma)`.
 ///
-/// At the stop from a speed well above v_s hardly any Stribeck friction remains.
+/// Hardly any Stribeck friction remains at a stop from a speed well above v_s.
 #[test]
 fn breakaway_rises_with_the_duration_of_a_rest() {
     let arrival = F_S / (1.0 + (0.05 / V_S).powi(2));
@@ -50,7 +51,7 @@ fn breakaway_rises_with_the_duration_of_a_rest() {
     }
 }
 
-/// When the speed jumps from slow to fast, friction drops `tau_L` later, exact to the sample.
+/// After a jump from a low to a high speed, friction falls `tau_L` later, exact to the sample.
 #[test]
 fn friction_drops_after_the_delay_if_the_speed_jumps() {
     for dt in [1e-4, 1e-3, 2e-3] {
@@ -72,7 +73,7 @@ fn friction_drops_after_the_delay_if_the_speed_jumps() {
     }
 }
 
-/// Before breakaway the contact is a spring.
+/// Before breakaway, the contact is a linear spring.
 #[test]
 fn contact_is_a_spring_before_breakaway() {
     let force = along::<f64>("seven_parameter", &VALUES, 1e-3, 200, |t| {

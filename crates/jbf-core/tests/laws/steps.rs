@@ -1,4 +1,4 @@
-//! Discretisation errors of the laws.
+//! Tests of the discretisation errors of the laws.
 //!
 //! Laws that depend on the distance alone are exact for any step along the same path; the errors of
 //! the others fall with the square of the step.
@@ -6,7 +6,8 @@
 use super::support::{along, sine, starts};
 use jbf_core::law::CATALOGUE;
 
-/// RMS difference to a run with steps sixty-four times shorter, over the last of four periods.
+/// RMS difference of a run from one with steps sixty-four times shorter, over the last of four
+/// periods.
 fn error(name: &str, per_period: u32, amplitude: f64) -> f64 {
     let law = CATALOGUE.iter().find(|l| l.name == name).expect("known");
     let omega = 5.0;

@@ -1,4 +1,4 @@
-//! Any law of the catalogue along any motion.
+//! Functions that run any law of the catalogue along any motion.
 
 use crate::common::random::Random;
 use crate::common::readings;
@@ -6,12 +6,12 @@ use jbf_core::effect::{Effects, Rig};
 use jbf_core::law::{with_law, Info, Named, Visitor, CATALOGUE};
 use jbf_core::{Chain, Clock, Motion, Real};
 
-/// The laws that need no bearing.
+/// Descriptions of the laws that need no bearing.
 pub fn in_newtons() -> impl Iterator<Item = &'static Info> {
     CATALOGUE.iter().filter(|law| !law.needs_bearing)
 }
 
-/// A linear axis, represented by a rotary one of radius 1 m.
+/// Chain of a law and effects on a linear axis, represented by a shaft of radius 1 m.
 pub fn axis<T: Real, L>(law: L, effects: Effects<T>) -> Chain<T, L> {
     let rig = Rig {
         radius_m: T::ONE,
@@ -39,7 +39,7 @@ impl<T: Real, F: Fn(f64) -> Motion<T>> Visitor<T> for Along<F> {
     }
 }
 
-/// Readings (N) of the named law: the first sample, then `steps` steps of `dt_s`.
+/// Readings (N) of the law `name`: at the first sample and after each of `steps` steps of `dt_s`.
 pub fn along<T: Real>(
     name: &str,
     values: &[T],
@@ -56,17 +56,17 @@ pub fn along<T: Real>(
         .unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-/// The starting values of a law.
+/// First start values of the parameters of a law.
 pub fn starts(law: &Info) -> Vec<f64> {
     law.parameters.iter().map(|p| p.starts[0]).collect()
 }
 
-/// Random values within the bounds of a law.
+/// Random values within the bounds of the parameters of a law.
 pub fn anywhere(law: &Info, random: &mut Random) -> Vec<f64> {
     law.parameters.iter().map(|p| random.parameter(p)).collect()
 }
 
-/// A motion at a time with speed and position only.
+/// Motion at a time with a speed and a position, under a load of 1 N.
 pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T> {
     Motion::at_rest(T::ONE)
         .with_time_s(T::of(time_s))
@@ -75,7 +75,7 @@ pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T
         .with_angle_rad(T::of(place_m))
 }
 
-/// A sinusoidal position, amplitude in m.
+/// Sinusoidal position with an amplitude in m, as a function of time.
 pub fn sine<T: Real>(amplitude_m: f64, omega_rad_s: f64) -> impl Fn(f64) -> Motion<T> {
     move |t| {
         let (sin, cos) = (omega_rad_s * t).sin_cos();
@@ -83,7 +83,7 @@ pub fn sine<T: Real>(amplitude_m: f64, omega_rad_s: f64) -> impl Fn(f64) -> Moti
     }
 }
 
-/// Largest difference between two signals.
+/// Largest absolute difference between two signals.
 pub fn gap(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! A mirrored motion gives the mirrored friction.
+//! Tests that a mirrored motion has the mirrored friction.
 
 use super::support::{along, anywhere, in_newtons};
 use crate::common::motion::Sines;

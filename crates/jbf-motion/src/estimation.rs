@@ -1,16 +1,17 @@
-//! Errors of the readings of a motion, and its corners, by expectation-maximisation (EM).
+//! Errors of the readings of a motion, and its corners (steps with a high intensity of the process
+//! noise), by expectation-maximisation (EM).
 
 use core::ops::Range;
 
 use crate::smoother::{Adjoint, Forward, LinearReading, Readings};
 
-/// Degrees of freedom of the noise's t distribution: with few, corners are sharp.
+/// Degrees of freedom of the t distribution of the process noise; with few, corners are sharp.
 const FREEDOM: u32 = 2;
-/// Relative change of intensity and variances in a pass below which EM ends.
+/// Relative change of intensity and variances in one EM pass below which the iteration ends.
 const SETTLED: f64 = 0.01;
-/// Number of passes with the t distribution before which EM does not end.
+/// Smallest number of EM passes with the t distribution.
 const FEWEST: usize = 3;
-/// Smallest intensity, so that its logarithm exists.
+/// Smallest intensity of the process noise, a limit that keeps its logarithm finite.
 const LEAST: f64 = 1e-300;
 
 /// Recorded motion at n instants, with errors that are to be estimated.
@@ -23,61 +24,62 @@ pub struct Record<'a> {
     /// Relative standard errors of the positions: factors of the standard error in
     /// [`ReadingErrors`].
     pub position_shape: &'a [f64],
-    /// Smallest variance of a position, from the step of an encoder.
+    /// Smallest variance of a position, from the step of an encoder, m^2 (or rad^2).
     pub position_floor: f64,
     /// Velocities, m/s or rad/s; NaN for a missing reading.
     pub velocity: &'a [f64],
     /// Relative standard errors of the velocities.
     pub velocity_shape: &'a [f64],
-    /// Smallest variance of a velocity.
+    /// Smallest variance of a velocity, (m/s)^2.
     pub velocity_floor: f64,
-    /// Relative standard error up to which a velocity is assigned, not read.
+    /// Relative standard error up to which a velocity is assigned instead of measured.
     ///
     /// Assigned velocities are not used in the estimate of the variance of the velocities.
     pub assigned: f64,
-    /// Measured linear functions of the motion, one for each instant, or none at all.
+    /// Measured linear functions of the motion, one for each instant; empty if there are none.
     pub linear: &'a [LinearReading],
-    /// Whether each step has the same factor of the intensity as the one before it; empty if each
-    /// has its own.
+    /// True for each step that has the same factor of the intensity as the previous step; empty if
+    /// each step has its own.
     pub continues: &'a [bool],
 }
 
-/// Errors of the readings of a motion, and the noise that drives it.
+/// Error variances of the readings of a motion, and the intensity of its process noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReadingErrors {
     /// Variance of the positions, m^2 (or rad^2).
     pub position_variance: f64,
-    /// Variance of the velocities, (m/s)^2.
+    /// Variance of the velocities, (m/s)^2 (or (rad/s)^2).
     pub velocity_variance: f64,
-    /// Variance of the instants, s^2; adds `v^2 stamp_variance` to the variance of the position.
+    /// Variance of the instants, s^2; it adds `v^2 stamp_variance` to the variance of the position.
     pub stamp_variance: f64,
-    /// Intensity of the noise, (m/s^N)^2 s.
+    /// Intensity of the process noise of a motion of order N, (m/s^N)^2 s.
     pub intensity: f64,
     /// Time delay of the velocities, s.
     pub velocity_delay: f64,
 }
 
-/// Largest numbers of passes of [`estimate`].
+/// Largest numbers of EM passes of [`estimate`].
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
-    /// Initial passes with the given factors.
+    /// Passes with constant factors of the intensity, before the others.
     pub normal: usize,
-    /// Passes with the t distribution.
+    /// Passes with the t distribution, in which the factors are estimated.
     pub robust: usize,
 }
 
-/// Quantities that [`estimate`] takes from the start values.
+/// Quantities that [`estimate`] holds at their start values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// None: errors of the readings and intensity are estimated.
+    /// None: error variances of the readings and intensity are estimated.
     Nothing,
     /// The intensity.
     Intensity,
-    /// Errors of the readings and intensity; only the factors of the intensity are estimated.
+    /// Error variances of the readings and the intensity; only the factors of the intensity are
+    /// estimated.
     Everything,
 }
 
-/// Variances of the positions and of the velocities; infinite where there is no reading.
+/// Error variances of the positions and of the velocities; infinite where a reading is missing.
 #[derive(Clone, Debug, Default)]
 struct Variances {
     position: Vec<f64>,
@@ -119,7 +121,7 @@ impl Record<'_> {
         }
     }
 
-    /// Ranges of the steps that have one factor of the intensity.
+    /// Ranges of adjacent steps that share a factor of the intensity.
     fn intervals(&self, steps: usize) -> impl Iterator<Item = Range<usize>> + '_ {
         let mut first = 0;
         (1..=steps).filter_map(move |end| {
@@ -132,7 +134,8 @@ impl Record<'_> {
         })
     }
 
-    /// Calls `using` with the readings and the intensity of each step.
+    /// Calls `using` with the readings, including their error variances, and the intensity of each
+    /// step.
     ///
     /// # Arguments
     /// * `corners`: factor of the intensity in each of the n - 1 steps.
@@ -154,9 +157,9 @@ impl Record<'_> {
 /// Estimates the errors of the readings and the factor of the intensity in each step, from start
 /// values.
 ///
-/// The noise that drives the motion follows a t distribution: a normal one whose intensity `q c[k]`
-/// in step k has an inverse gamma factor `c[k]`. EM maximises the likelihood over q and the
-/// variances of the readings.
+/// The process noise of the motion follows a t distribution: a normal distribution whose intensity
+/// `q c[k]` in step k has a factor `c[k]` with an inverse gamma distribution. EM maximises the
+/// likelihood over q and the variances of the readings.
 ///
 /// # Arguments
 /// * `corners`: start values of the factors, n - 1.
@@ -208,9 +211,9 @@ pub fn estimate<const N: usize>(
 
 /// Variational lower bound of the log-likelihood, marginal over the factors of all steps.
 ///
-/// With `w = 1 / c` it is `log p(y | E w) + sum(N / 2 (E log w - log E w) - KL)`. KL is the
-/// Kullback-Leibler divergence of the posterior of w, a gamma distribution, from its prior. It is a
-/// bound at a fixed point of EM, and close to one before.
+/// With `w = 1 / c` the bound is `log p(y | E w) + sum(N / 2 (E log w - log E w) - KL)`. KL is the
+/// Kullback-Leibler divergence of the posterior of w, a gamma distribution, from its prior. The
+/// value is a bound at a fixed point of EM, and approximately a bound before.
 ///
 /// # Sources
 /// Bishop, *Pattern Recognition and Machine Learning* (2006), section 10.1.
@@ -246,8 +249,10 @@ pub fn lower_bound<const N: usize>(
     })
 }
 
-/// Sum of the squared disturbances of the steps of an interval, relative to the intensity, and the
-/// number of its disturbances; steps of zero length have none.
+/// Sum of the squared disturbances in an interval of steps, relative to the intensity, and the
+/// number of components of the disturbances.
+///
+/// Steps of zero length have no disturbance.
 fn total<const N: usize>(disturbance: &[f64], intensity: f64) -> (f64, u32) {
     let finite = disturbance.iter().filter(|d| d.is_finite());
     finite.fold((0.0, 0), |(sum, count), d| {
@@ -255,7 +260,8 @@ fn total<const N: usize>(disturbance: &[f64], intensity: f64) -> (f64, u32) {
     })
 }
 
-/// Reciprocal of the posterior mean of the precision factor `1 / c` of an interval.
+/// Factor of the intensity of an interval: reciprocal of the posterior mean of the precision `1 /
+/// c`.
 fn factor<const N: usize>(disturbance: &[f64], intensity: f64) -> f64 {
     let (square, count) = total::<N>(disturbance, intensity);
     let freedom = f64::from(FREEDOM);
@@ -265,7 +271,8 @@ fn factor<const N: usize>(disturbance: &[f64], intensity: f64) -> f64 {
     (freedom + square) / (freedom + f64::from(count))
 }
 
-/// Logarithm of the gamma function and its derivative at n / 2, n > 0, by recurrence.
+/// Logarithm of the gamma function and its derivative (digamma function) at n / 2, n > 0, by
+/// recurrence.
 fn gamma_of_half(n: u32) -> (f64, f64) {
     const EULER: f64 = 0.577_215_664_901_532_9;
     let (mut x, mut ln_gamma, mut digamma) = if n % 2 == 0 {
@@ -282,14 +289,15 @@ fn gamma_of_half(n: u32) -> (f64, f64) {
     (ln_gamma, digamma)
 }
 
-/// Posterior expectations for a maximisation; later passes reuse the memory of the first.
+/// Posterior expectations for the maximisation step of EM; later passes reuse the memory of the
+/// first.
 struct Expectations<const N: usize> {
     forward: Forward<N>,
     variances: Variances,
     intensity: Vec<f64>,
-    /// Posterior mean of the velocity at each instant.
+    /// Posterior mean of the velocity at each instant, m/s or rad/s.
     speed: Vec<f64>,
-    /// Expected squares of the errors of position and velocity.
+    /// Expected squared errors of the position readings and of the velocity readings.
     squares: [Vec<f64>; 2],
     /// Expected squared disturbance of each step.
     disturbance: Vec<f64>,
@@ -337,7 +345,7 @@ impl<const N: usize> Expectations<N> {
         });
     }
 
-    /// Variances that maximise the expected likelihood.
+    /// Returns the error variances and the intensity that maximise the expected likelihood.
     fn maximised(&self, record: &Record, errors: &ReadingErrors, corners: &[f64]) -> ReadingErrors {
         let mut found = *errors;
         let steps = self.disturbance.iter().zip(corners);

@@ -7,8 +7,8 @@
 //! x[k+1] = F(h) x[k] + w[k],   w[k] ~ N(0, q[k] Q(h)),   h = t[k+1] - t[k] >= 0
 //! ```
 //!
-//! With order 3 the jerk is noise: accelerations jump where q is large. With order 4 the snap is
-//! noise: the acceleration is smooth.
+//! In a motion of order 3, the jerk is noise, and the acceleration jumps where q is large. In a
+//! motion of order 4, the snap is noise, and the acceleration is smooth.
 //!
 //! [`estimate`] estimates the variances of the readings and the intensity of each step by
 //! expectation-maximisation. [`smooth`] returns the posterior mean and covariance of the state at

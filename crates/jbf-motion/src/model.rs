@@ -1,20 +1,20 @@
-//! Transition and process noise of a motion with one derivative that is white noise.
+//! Transition and process noise of a motion whose highest derivative is white noise.
 
 use nalgebra::{SMatrix, SVector};
 
-/// A state: the position and its first N - 1 derivatives.
+/// State of a motion: the position and its first N - 1 derivatives.
 pub(crate) type State<const N: usize> = SVector<f64, N>;
 /// Covariance or transition matrix of states.
 pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
 
-/// Transition of a state over a step.
+/// Transition of a state over a time step, with the covariance of its disturbance.
 pub(crate) struct Transition<const N: usize> {
-    /// Length of the step.
+    /// Length of the step, in units of the median step.
     pub h: f64,
     /// Terms `h^i / i!`: the transition is `F[i][j] = powers[j - i]`, with zeros below the
     /// diagonal.
     powers: [f64; N],
-    /// Covariance of the disturbance for noise of unit intensity.
+    /// Covariance of the disturbance for process noise of unit intensity.
     pub noise: Square<N>,
 }
 
@@ -73,7 +73,7 @@ impl<const N: usize> Transition<N> {
     }
 }
 
-/// Symmetric part of a matrix: rounding makes a covariance slightly asymmetric.
+/// Symmetric part of a matrix, which removes the asymmetry of a covariance by rounding.
 pub(crate) fn symmetric<const N: usize>(m: &Square<N>) -> Square<N> {
     (m + m.transpose()) * 0.5
 }

@@ -2,7 +2,8 @@
 
 use crate::model::{symmetric, Square, State, Transition, Update};
 
-/// Recorded motion at n instants; a reading with an infinite variance is missing.
+/// Recorded motion at n instants with error variances; a reading with an infinite variance is
+/// missing.
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
     /// Instants, s, not decreasing; shape (n,).
@@ -18,11 +19,12 @@ pub struct Readings<'a> {
     /// Time delay of the velocities, s: each reading is the velocity at this time before its
     /// instant.
     pub velocity_delay: f64,
-    /// Linear functions of the motion that were measured, one for each instant, or none at all.
+    /// Measured linear functions of the motion, one for each instant; empty if there are none.
     pub linear: &'a [LinearReading],
 }
 
-/// Measurement `value = row . (position, velocity, acceleration) + e`, `e ~ N(0, variance)`.
+/// Measured linear function `value = row . (position, velocity, acceleration) + e` of the motion,
+/// `e ~ N(0, variance)`.
 ///
 /// A reading with an infinite variance is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,29 +37,31 @@ pub struct LinearReading {
     pub variance: f64,
 }
 
-/// Posterior of a motion of order N, in SI units, or with radians in place of metres.
+/// Posterior distribution of a motion of order N, in SI units, or with radians in place of metres.
 #[derive(Clone, Debug, Default)]
 pub struct Smoothed<const N: usize> {
     /// Position, velocity, acceleration and further derivatives at each instant.
     pub mean: Vec<[f64; N]>,
-    /// Covariance of the states, by rows.
+    /// Covariance of the state at each instant, by rows.
     pub covariance: Vec<[[f64; N]; N]>,
     /// Gains of the posterior as a Markov chain backward in time, n - 1 matrices by rows:
     /// `E[x[k] | x[k+1]] = mean[k] + gain[k] (x[k+1] - mean[k+1])`.
     pub gain: Vec<[[f64; N]; N]>,
-    /// Expected square `E[w' Q(h)^-1 w]` of the disturbance of each step for noise of unit
-    /// intensity.
+    /// Expected square `E[w' Q(h)^-1 w]` of the disturbance w of each step, where `Q(h)` is its
+    /// covariance for process noise of unit intensity.
     ///
-    /// It is N q where the readings contain no information, and NaN where the step is zero.
+    /// The value is N q if the readings contain no information about the step, and NaN for a step
+    /// of zero length.
     pub disturbance: Vec<f64>,
     /// Log-likelihood of the readings.
     pub log_likelihood: f64,
 }
 
-/// Smooths a motion of order N, whose N-th derivative is white noise.
+/// Computes the posterior distribution of a motion of order N, whose N-th derivative is white
+/// noise.
 ///
 /// # Arguments
-/// * `intensity`: of the noise in each of the n - 1 steps, (m/s^N)^2 s.
+/// * `intensity`: intensity of the process noise in each of the n - 1 steps, (m/s^N)^2 s.
 ///
 /// Slices of different lengths are read up to the shortest.
 ///
@@ -107,7 +111,7 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
     out
 }
 
-/// Log-likelihood of the readings, as returned by [`smooth`], by the filter alone.
+/// Computes the log-likelihood of the readings, as returned by [`smooth`], without the smoother.
 pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) -> f64 {
     filter::<N>(readings, intensity, |_, _, _| ()).log_likelihood
 }
@@ -115,21 +119,21 @@ pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) ->
 type Estimate<const N: usize> = (State<N>, Square<N>);
 type Updates<const N: usize> = [Option<(Update<N>, f64)>; 3];
 
-/// States of the filter, stored for the backward pass; a second pass reuses the memory of the
-/// first.
+/// States of the forward pass (Kalman filter), stored for the backward pass; later passes reuse the
+/// memory of the first.
 #[derive(Default)]
 pub(crate) struct Forward<const N: usize> {
     pub time: TimeScale,
     pub log_likelihood: f64,
-    /// Mean and covariance of each state given the readings up to it.
+    /// Mean and covariance of each state given the readings up to its instant.
     pub filtered: Vec<Estimate<N>>,
-    /// Covariance of each state given the readings before it.
+    /// Covariance of each state given the readings before its instant.
     predicted: Vec<Square<N>>,
     updates: Vec<Updates<N>>,
 }
 
-/// Information in the readings after an instant about its state x: `E[x | all] = m + P state` and
-/// `cov[x | all] = P - P square P`, where m and P are the filter's mean and covariance.
+/// Information about a state x in the readings after its instant: `E[x | all] = m + P state` and
+/// `cov[x | all] = P - P square P`, where m and P are the filtered mean and covariance.
 pub(crate) struct Adjoint<const N: usize> {
     pub state: State<N>,
     pub square: Square<N>,
@@ -146,7 +150,7 @@ impl<const N: usize> Adjoint<N> {
 }
 
 impl<const N: usize> Forward<N> {
-    /// Filters the readings.
+    /// Computes and stores the filtered states for the readings.
     pub(crate) fn pass(&mut self, readings: &Readings, intensity: &[f64]) {
         self.filtered.clear();
         self.predicted.clear();
@@ -203,12 +207,12 @@ impl<const N: usize> Forward<N> {
     }
 }
 
-/// Time in units of the median step.
+/// Internal unit of time, the median step.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct TimeScale {
     /// Median step, s.
     pub unit: f64,
-    /// Factor of the intensity of the noise.
+    /// Factor that converts the intensity of the process noise to the internal unit of time.
     pub intensity: f64,
 }
 
@@ -219,13 +223,14 @@ impl TimeScale {
         Self { unit, intensity }
     }
 
-    /// Position and recorded velocity as linear functions of the state.
+    /// Coefficients of the position and of the recorded velocity as linear functions of the state.
     pub(crate) fn rows<const N: usize>(&self, readings: &Readings) -> [State<N>; 2] {
         let position = State::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 });
         [position, late_velocity(readings.velocity_delay / self.unit)]
     }
 
-    /// Linear reading at instant k as a function of the state; zero if there is none.
+    /// Coefficients of the linear reading at instant k as a function of the state; zero if there is
+    /// none.
     fn linear_row<const N: usize>(&self, readings: &Readings, k: usize) -> State<N> {
         let mut row = State::zeros();
         if let Some(reading) = readings.linear.get(k) {
@@ -245,13 +250,13 @@ impl TimeScale {
     }
 }
 
-/// Output of the filter other than its states.
+/// Results of the Kalman filter in addition to its states.
 struct FilterOutput {
     time: TimeScale,
     log_likelihood: f64,
 }
 
-/// Kalman filter that calls `visit` at each instant.
+/// Runs the Kalman filter and calls `visit` at each instant.
 ///
 /// Its arguments are the predicted state, the updates by the readings and the filtered state.
 fn filter<const N: usize>(
@@ -322,7 +327,7 @@ fn filter<const N: usize>(
     }
 }
 
-/// Velocity at `delay` before the instant, as a linear function of the state.
+/// Coefficients of the velocity at `delay` before an instant, as a linear function of the state.
 fn late_velocity<const N: usize>(delay: f64) -> State<N> {
     let mut row = State::zeros();
     let mut term = 1.0;
@@ -348,10 +353,10 @@ fn store<const N: usize>(
     }
 }
 
-/// Weakly informative initial state.
+/// Initial state with a weakly informative distribution.
 ///
-/// The position is near the first reading (zero if there is none) and the velocity up to the
-/// largest one recorded. Further derivatives are up to that velocity per step.
+/// The mean position is the first reading (zero if there is none). The standard deviation of the
+/// velocity is the largest one recorded, and that of further derivatives is this velocity per step.
 fn initial_state<const N: usize>(readings: &Readings, n: usize, unit: f64) -> Estimate<N> {
     let seen =
         |k: &usize| readings.position_variance[*k].is_finite() && readings.position[*k].is_finite();

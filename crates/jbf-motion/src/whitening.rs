@@ -1,9 +1,11 @@
-//! Whitening of residuals that contain errors of the motion.
+//! Whitening of residuals that contain the errors of a recorded motion.
 
 use crate::model::{symmetric, Square, State, Update};
 
-/// Whitens columns of residuals `r[k] = e[k] + s[k] (x[k] - mean[k])` in place, with independent
-/// `e[k] ~ N(0, variance[k])` and x the motion of a posterior.
+/// Whitens columns of residuals that contain the errors of a motion, in place.
+///
+/// A residual is `r[k] = e[k] + s[k] (x[k] - mean[k])`, with independent `e[k] ~ N(0, variance[k])`
+/// and x the motion of a posterior.
 ///
 /// # Arguments
 /// * `posterior`, `gain`: covariances and gains of the motion, see [`crate::Smoothed`].

@@ -1,4 +1,4 @@
-//! The smoother and the whitening compared with dense linear algebra, and their invariances.
+//! Tests of the smoother and the whitening against dense linear algebra, and of their invariances.
 
 use jbf_motion::{
     estimate, smooth, whiten, Known, LinearReading, Passes, ReadingErrors, Readings, Smoothed,
@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, SMatrix};
 const SAMPLES: usize = 9;
 const INF: f64 = f64::INFINITY;
 
-/// Uneven instants, one of them repeated, and readings, some of them missing.
+/// Record with uneven instants, one of them repeated, and some missing readings.
 struct Record {
     time: Vec<f64>,
     position: Vec<f64>,
@@ -46,7 +46,7 @@ impl Record {
         record
     }
 
-    /// Adds forces `2 a + 0.5 v - p + e` at all instants but one.
+    /// Adds readings of a force `2 a + 0.5 v - p + e` at all instants except one.
     fn with_forces(mut self) -> Self {
         let reading = |k: usize| LinearReading {
             row: [-1.0, 0.5, 2.0],

@@ -1,5 +1,5 @@
-//! Friction readings along records, and their derivatives with respect to the parameters, for laws
-//! and effects that are selected by name at run time.
+//! Prediction of friction readings along records, with derivatives with respect to the parameters,
+//! for laws and effects that are selected by name at run time.
 //!
 //! ```
 //! use jbf_core::{law, record::Record, Clock};

@@ -1,4 +1,4 @@
-//! Prediction model: a law and effects, selected by name.
+//! Prediction model: a law and effects that are selected by name.
 
 use crate::run::Run;
 use jbf_batch::Baseline;
@@ -8,39 +8,39 @@ use jbf_core::record::Record;
 use jbf_core::spec::{Spec, Using};
 use jbf_core::{law, Bearing, Clock, ParameterError, Real};
 
-/// A friction law with effects.
+/// Prediction model: a friction law with effects.
 ///
 /// The parameters are passed with each call: those of the law first, then those of each effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a> {
     /// Description of the law in the catalogue.
     pub law: &'a law::Info,
-    /// Bearing; a law in newtons needs none.
+    /// Bearing of the law; `None` for a law in newtons.
     pub bearing: Option<&'a Bearing>,
-    /// Load on one bearing, N, for a law that needs it.
+    /// Load on one bearing, N; `None` for a law in newtons.
     pub load_n: Option<f64>,
-    /// Clock of a law with a film.
+    /// Time scale of the film; ignored by a law without a film.
     pub clock: Clock,
-    /// Descriptions of the effects in the catalogue, all of which apply to the law.
+    /// Descriptions of the effects in the catalogue; all must apply to the law.
     pub effects: &'a [&'a Info],
-    /// Longest inner step, s.
+    /// Longest inner step between two samples, s.
     pub max_step_s: f64,
 }
 
-/// Precomputed path of a film along a record ([`jbf_core::film_path`]).
+/// Precomputed states of a film along a record ([`jbf_core::film_path`]).
 #[derive(Clone, Copy, Debug)]
 pub struct FilmPath<'a> {
     /// States of the film, one per step.
     pub places: &'a [Place],
-    /// Index of the step that leads to each sample, for samples with a step.
+    /// For each sample that a step leads to, the index of that step.
     pub ends: &'a [u32],
 }
 
 impl Model<'_> {
-    /// Builds the chain with one set of parameter values and passes it to `then`.
+    /// Creates the chain with the given parameter values and passes it to the operation `then`.
     ///
     /// # Errors
-    /// Names the first parameter that violates its rule.
+    /// Reports the first parameter that violates its rule.
     ///
     /// # Panics
     /// If there are fewer values than parameters.
@@ -65,10 +65,11 @@ impl Model<'_> {
         spec.chain(effects, then)
     }
 
-    /// Computes the friction readings along a record, N, one per sample.
+    /// Computes the friction readings along a record, N, one per sample, on a precomputed path of
+    /// the film if there is one.
     ///
     /// # Errors
-    /// Names the first parameter that violates its rule.
+    /// Reports the first parameter that violates its rule.
     pub fn readings(
         &self,
         parameters: &[f64],

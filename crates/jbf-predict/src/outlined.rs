@@ -1,13 +1,13 @@
 //! Effects of the catalogue, with each stage compiled as a separate function.
 //!
-//! A chain that holds [`Effects`] itself inlines the code of all effects into the time loop of its
-//! law. For ten laws, four number types and two instruction sets that is about fifty times. Here
-//! that code is compiled once per number type and instruction set. A step costs one call per stage
-//! that has an effect, and nothing for a stage without effects.
+//! In a chain with [`Effects`], the code of all effects is inlined into the time loop of the law.
+//! With ten laws, four number types and two instruction sets, there would be about fifty copies of
+//! this code. In this module, the code is compiled once per number type and instruction set. A step
+//! makes one call per stage with an effect, and none for a stage without effects.
 //!
-//! Arguments passed by reference are forced into memory. Therefore the states of the effects are
-//! outside the state of the chain, and a stage copies values in and out. The variables of the time
-//! loop then stay in registers.
+//! Arguments passed by reference must be in memory. The states of the effects are therefore outside
+//! the state of the chain, and a stage copies values in and out, so that the variables of the time
+//! loop stay in registers.
 
 use core::cell::RefCell;
 use jbf_batch::InstructionSet;
@@ -17,10 +17,11 @@ use jbf_core::law::Scales;
 use jbf_core::motion::{JournalMotion, Motion};
 use jbf_core::Real;
 
-/// [`Effects`] whose stages are called as functions compiled for the instruction set `I`.
+/// Effects of the catalogue whose stages are functions that are compiled for the instruction set
+/// `I`.
 ///
-/// It serves one run of one chain at a time: copies share one cell of states. The results are
-/// identical bit for bit.
+/// One value serves one run of one chain at a time, because copies share one cell of states. The
+/// results are identical bit for bit to those of [`Effects`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outlined<'a, T: Real, I> {
     effects: &'a Effects<T>,
@@ -30,7 +31,7 @@ pub(crate) struct Outlined<'a, T: Real, I> {
 }
 
 impl<'a, T: Real, I> Outlined<'a, T, I> {
-    /// Creates the set from effects, their states and an instruction set.
+    /// Creates the set from effects, the cell for their states, and an instruction set.
     pub(crate) fn new(
         effects: &'a Effects<T>,
         states: &'a RefCell<States<T>>,
@@ -46,7 +47,7 @@ impl<'a, T: Real, I> Outlined<'a, T, I> {
 }
 
 impl<T: Real, I: InstructionSet> Outlined<'_, T, I> {
-    /// Calls a stage as a separate function, into which its body is always inlined.
+    /// Calls a stage as a separate function, into which the code of its effects is inlined.
     #[inline(always)]
     fn call<R>(&self, stage: impl FnOnce(&Effects<T>, &mut States<T>) -> R) -> R {
         let (effects, states) = (self.effects, self.states);

@@ -1,4 +1,5 @@
-//! Derivatives of the readings, for a group of parameters per pass, in parallel in the registers.
+//! Derivatives of the readings with respect to a group of parameters per pass over a record, in
+//! vector registers.
 
 use crate::model::{FilmPath, Model};
 use crate::run::Run;
@@ -8,12 +9,16 @@ use jbf_core::{Dual, ParameterError, Real};
 
 /// Number of parameters in the shortest pass, usually those of a law.
 const FEW: usize = 4;
-/// Number of parameters in the usual pass, which costs a quarter more than the shortest.
+/// Number of parameters in the usual pass, which takes a quarter longer than the shortest.
 const MANY: usize = 8;
-/// Number of parameters in the longest pass, which costs three quarters of two usual ones.
+/// Number of parameters in the longest pass, which takes three quarters of the time of two usual
+/// ones.
 const MOST: usize = 12;
 
-/// Parameters of each pass over a record, for the present machine.
+/// Divides the indices of parameters, `which`, into groups for [`Model::derivatives`].
+///
+/// The derivatives with respect to one group are computed in one pass over a record. The largest
+/// group depends on the instruction set of the machine.
 pub fn parameter_passes(which: &[usize]) -> Vec<&[usize]> {
     match which.len() {
         0 => vec![&[]],
@@ -22,19 +27,21 @@ pub fn parameter_passes(which: &[usize]) -> Vec<&[usize]> {
     }
 }
 
-/// True on a processor without AVX2, for which only passes of eight are compiled.
+/// Returns true on a processor without AVX2, for which only passes with eight parameters are
+/// compiled.
 fn only_passes_of_eight(simd: Simd) -> bool {
     cfg!(all(feature = "wide", target_arch = "x86_64")) && matches!(simd, Simd::Baseline)
 }
 
 impl Model<'_> {
-    /// Computes the readings (N) along a record and their derivatives with respect to the
-    /// parameters `which`, row by row.
+    /// Computes the readings (N) along a record, and their derivatives with respect to the
+    /// parameters `which`.
     ///
-    /// `which` is one of the [`parameter_passes`].
+    /// The derivatives have one row per sample. `which` contains indices and is a group of
+    /// [`parameter_passes`].
     ///
     /// # Errors
-    /// Names the first parameter that violates its rule.
+    /// Reports the first parameter that violates its rule.
     ///
     /// # Panics
     /// If `which` has more parameters than a pass.
@@ -68,7 +75,7 @@ impl Model<'_> {
     }
 }
 
-/// One pass over a record.
+/// Arguments of one pass over a record.
 struct Pass<'a> {
     model: &'a Model<'a>,
     parameters: &'a [f64],

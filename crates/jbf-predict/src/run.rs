@@ -1,4 +1,4 @@
-//! Run of one chain, with any law, along a record.
+//! Prediction along a record with a chain of any law.
 
 use crate::model::FilmPath;
 use crate::outlined::Outlined;
@@ -12,18 +12,20 @@ use jbf_core::spec::Using;
 use jbf_core::{Chain, Motion, Real};
 use std::cell::RefCell;
 
-/// Runs a chain along a record and passes every reading (N) to `sink` with the index of its sample.
+/// Predicts the readings along a record: `sink` receives the index of each sample and its reading
+/// (N).
 pub struct Run<'a, T, I> {
     pub record: &'a Record<'a>,
     pub max_step_s: f64,
-    /// Path of the film, and the parameters of the law.
+    /// Path of the film and the parameters of the law; `None` if the film must be integrated.
     pub path: Option<(FilmPath<'a>, &'a [T])>,
     pub instructions: I,
     pub sink: &'a mut dyn FnMut(usize, T),
 }
 
 impl<T: Real, I: InstructionSet> Run<'_, T, I> {
-    /// Runs the time loop with the code of all effects inlined: fastest to run, slowest to compile.
+    /// Predicts with the code of all effects inlined: the fastest to run, and the slowest to
+    /// compile.
     fn inlined<L: Law<T>, E: EffectSet<T>>(self, chain: &Chain<T, L, E>, steps: Steps) {
         self.instructions.call(
             #[inline(always)]
@@ -31,7 +33,8 @@ impl<T: Real, I: InstructionSet> Run<'_, T, I> {
         );
     }
 
-    /// Runs the time loop with calls of the effects' stages, whose code all laws share.
+    /// Predicts with a function call per stage with effects; the code of these functions is common
+    /// to all laws.
     fn with_calls<L: Law<T>>(self, chain: Chain<T, L>) {
         let Chain { law, effects, rig } = chain;
         // Placeholder until the start of the chain replaces it.

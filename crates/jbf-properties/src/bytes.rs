@@ -1,11 +1,12 @@
-//! Conversion of bytes to numbers.
+//! Conversion of random bytes to numbers, step lengths, time scales and effects.
 
 use arbitrary::{Result, Unstructured};
 use jbf_core::effect::{self, Effects, Parameter};
 use jbf_core::law::Info;
 use jbf_core::{Clock, Real};
 
-/// Any number of magnitude at most `largest`, including zero and denormals.
+/// Draws any number with an absolute value of at most `largest`, including zero and denormal
+/// numbers.
 ///
 /// Half of the numbers have a magnitude typical of machines, which is rare in random bits.
 pub fn number(bytes: &mut Unstructured<'_>, largest: f64) -> Result<f64> {
@@ -21,7 +22,7 @@ pub fn number(bytes: &mut Unstructured<'_>, largest: f64) -> Result<f64> {
     })
 }
 
-/// Any number from `low` to `high`, over all decades if both are positive.
+/// Draws any number from `low` to `high`, from all decades if both are positive.
 pub fn between(bytes: &mut Unstructured<'_>, low: f64, high: f64) -> Result<f64> {
     let share = f64::from(bytes.arbitrary::<u16>()?) / f64::from(u16::MAX);
     let value = if low > 0.0 {
@@ -32,7 +33,7 @@ pub fn between(bytes: &mut Unstructured<'_>, low: f64, high: f64) -> Result<f64>
     Ok(value.clamp(low, high))
 }
 
-/// A value within the bounds of a parameter; sometimes a bound or its null.
+/// Draws a value within the bounds of a parameter, in some cases a bound or the null value.
 pub fn parameter(bytes: &mut Unstructured<'_>, page: &Parameter) -> Result<f64> {
     match bytes.arbitrary::<u8>()? {
         0 => Ok(page.lower),
@@ -45,13 +46,13 @@ pub fn parameter(bytes: &mut Unstructured<'_>, page: &Parameter) -> Result<f64> 
     }
 }
 
-/// Values for all parameters of a list.
+/// Draws a value for each parameter of a list.
 pub fn parameters<T: Real>(bytes: &mut Unstructured<'_>, pages: &[Parameter]) -> Result<Vec<T>> {
     let values = pages.iter().map(|p| parameter(bytes, p).map(T::of));
     values.collect()
 }
 
-/// Length of a step, s.
+/// Draws the length of a step, s.
 pub fn step_s(bytes: &mut Unstructured<'_>) -> Result<f64> {
     if bytes.ratio(1, 8)? {
         return Ok(number(bytes, 1e9)?.abs());
@@ -59,7 +60,7 @@ pub fn step_s(bytes: &mut Unstructured<'_>) -> Result<f64> {
     between(bytes, 1e-7, 10.0)
 }
 
-/// Draws one of the two clocks.
+/// Draws one of the two time scales of the film.
 pub fn clock(bytes: &mut Unstructured<'_>) -> Result<Clock> {
     Ok(if bytes.arbitrary()? {
         Clock::Journal
@@ -68,7 +69,7 @@ pub fn clock(bytes: &mut Unstructured<'_>) -> Result<Clock> {
     })
 }
 
-/// Some of the effects that are compatible with a law: none, a few, or any subset.
+/// Draws some of the effects that are compatible with a law: none, a few, or any subset.
 pub fn effects<T: Real>(bytes: &mut Unstructured<'_>, law: &Info) -> Result<Effects<T>> {
     let mut effects = Effects::NONE;
     let fitting = |i: usize| effect::CATALOGUE[i].lacking(law).is_none();
@@ -93,7 +94,7 @@ pub fn effects<T: Real>(bytes: &mut Unstructured<'_>, law: &Info) -> Result<Effe
     Ok(effects)
 }
 
-/// Relative spacing of the numbers of a type.
+/// Machine epsilon of a number type, the relative distance between adjacent numbers.
 pub fn rounding<T: Real>() -> f64 {
     if size_of::<T>() == size_of::<f32>() {
         f32::EPSILON.into()

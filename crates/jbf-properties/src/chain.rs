@@ -1,4 +1,5 @@
-//! Any law with any compatible effects, along a motion with jumps.
+//! Property: the readings of any law with any compatible effects are finite along a motion with
+//! jumps.
 
 use crate::bytes::{clock, effects, number, parameters, step_s};
 use crate::steps::seen;
@@ -7,10 +8,10 @@ use jbf_core::effect::{Effects, Rig};
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{Bearing, Chain, Motion, Real};
 
-/// Largest quantity of the motion, SI.
+/// Largest value of each quantity of the motion, SI units.
 ///
-/// Beyond it, the equations give a force of a stiff drive or a heat of a film that overflows in
-/// single precision.
+/// With larger values, the force of a stiff drive or the heat of a film overflows in single
+/// precision.
 const LARGEST: f64 = 1e4;
 
 struct Along<'a, 'b, T: Real> {

@@ -1,4 +1,4 @@
-//! Every compensator of the core with any valid settings.
+//! Draws any compensator of `jbf_core` with any valid settings.
 
 use crate::bytes::{between, clock, effects, number, parameters};
 use arbitrary::{Result, Unstructured};
@@ -18,9 +18,9 @@ use jbf_core::observer::CoulombObserver;
 use jbf_core::plant::Drive;
 use jbf_core::{Bearing, Chain, Real};
 
-/// An action on any compensator.
+/// Operation on a compensator of any type.
 pub trait With<T: Real> {
-    /// Performs the action; `name` identifies the compensator in a failure message.
+    /// Performs the operation; `name` identifies the compensator in a failure message.
     fn with<C: Compensator<T>>(
         self,
         bytes: &mut Unstructured<'_>,
@@ -29,17 +29,18 @@ pub trait With<T: Real> {
     ) -> Result<()>;
 }
 
-/// Settings shared by all parts of a loop.
+/// Settings that the control loop and its compensator share.
 pub struct Loop {
-    /// The motor and shaft.
+    /// Motor and shaft.
     pub drive: Drive,
-    /// The control law.
+    /// Control law without compensation.
     pub law: BaseLaw<f64>,
-    /// Step, s.
+    /// Time step of the control loop, s.
     pub dt_s: f64,
 }
 
-/// Any compensator except the observed one; invalid settings are skipped.
+/// Passes the compensator number `which`, without a friction model and observer, to `then`; invalid
+/// settings are skipped.
 fn plain<T: Real>(
     bytes: &mut Unstructured<'_>,
     rig: &Loop,
@@ -146,7 +147,8 @@ impl<T: Real, W: With<T>> Visitor<T> for Round<'_, '_, T, W> {
     }
 }
 
-/// The observed compensator with any law and any effects.
+/// Passes a compensator with a friction model, of any law and any effects, and an observer to
+/// `then`.
 fn round<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) -> Result<()> {
     let settings = Settings::new(
         &rig.drive,
@@ -175,7 +177,7 @@ fn round<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) 
     with_law(page.name, bearing, Some(104.0), &values, clock, round).unwrap_or(Ok(()))
 }
 
-/// Builds any compensator and passes it to `then`.
+/// Draws a compensator of any type and passes it to `then`.
 pub fn any<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) -> Result<()> {
     let which = bytes.int_in_range(0..=9_u8)?;
     if which < 5 {

@@ -1,6 +1,7 @@
-//! Any loop gives a finite voltage within the limit and a finite speed for any counter and target.
+//! Property: the output of any control loop is finite and within its limit, and the speed is
+//! finite, for any counter and target.
 //!
-//! When both are constant, the loop becomes valid again.
+//! The loop is valid again after some steps with a constant counter and target.
 
 use crate::bytes::{between, number};
 use crate::compensators::{any, Loop, With};
@@ -14,7 +15,7 @@ use jbf_core::plant::Drive;
 use jbf_core::reference::Target;
 use jbf_core::Real;
 
-/// Largest number of steps per input, which limits the duration of a case.
+/// Largest number of steps per input, which limits the duration of a test.
 const STEPS: usize = 64;
 
 struct Running<T: Real> {
@@ -129,8 +130,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     any(bytes, &Loop { drive, law, dt_s }, running)
 }
 
-/// Checks that any loop with any compensator has a finite output within its limit, for any counter
-/// and target.
+/// Checks the property of this module, with any compensator.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

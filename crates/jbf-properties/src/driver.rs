@@ -1,4 +1,4 @@
-//! A trajectory along any sine or record, to any tolerance.
+//! Property: a trajectory along any sine or record, with any tolerance, is finite.
 
 use crate::bytes::{between, parameter};
 use crate::steps;
@@ -8,10 +8,10 @@ use jbf_core::law::journal::{Journal, Parameters, PARAMETERS};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// Number of samples of a trajectory; few suffice to test that it is finite.
+/// Number of samples of a trajectory; a few are sufficient to test that it is finite.
 const SAMPLES: usize = 12;
 
-/// Largest number of steps for `SAMPLES` samples.
+/// Largest number of integration steps of a trajectory with `SAMPLES` samples.
 const MOST_STEPS: u32 = 2_000_000;
 
 fn along<F: Film<f64, N>, E: Excitation, const N: usize>(

@@ -1,4 +1,5 @@
-//! The encoder compared with integers: every turn is counted, a jump is reported and omitted.
+//! Property: the encoder agrees with integer arithmetic for every motion, and reports and ignores
+//! every jump.
 
 use crate::bytes::{between, rounding};
 use crate::steps::seen;
@@ -57,7 +58,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Checks that any encoder follows every possible motion, and reports and omits every jump.
+/// Checks the property of this module, with any number of bits.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

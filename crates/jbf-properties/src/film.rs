@@ -1,4 +1,5 @@
-//! Both bearing models with each of their steppers.
+//! Property: the journal stays inside its bearing, with and without inertia and with each
+//! integration method.
 
 use crate::bytes::{between, clock, number, parameter, step_s};
 use crate::steps::seen;
@@ -9,7 +10,7 @@ use jbf_core::law::Law;
 use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P};
 use jbf_core::{Bearing, Real};
 
-/// Largest speed and load, SI.
+/// Largest speed and load, SI units.
 const LARGEST: f64 = 1e9;
 
 fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {

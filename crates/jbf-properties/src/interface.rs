@@ -1,7 +1,6 @@
-//! The C interface as called from C.
+//! Property: the C interface, called as from C, has the results of `jbf_core` bit for bit.
 //!
-//! It reports rejected input, including null pointers, by a code; its steps have the same bits as
-//! those of the core.
+//! It returns an error code for invalid input, including null pointers.
 
 use crate::bytes::{between, number, parameters, step_s};
 use crate::steps::seen;
@@ -26,7 +25,7 @@ const BEARING: CBearing = CBearing {
     count: Bearing::THESIS.count,
 };
 
-/// Draws a number; one in sixteen is not finite.
+/// Draws any number; one in sixteen is not finite.
 fn any<T: Real>(bytes: &mut Unstructured<'_>) -> Result<T> {
     Ok(match bytes.int_in_range(0..=31_u8)? {
         0 => T::of(f64::NAN),
@@ -49,12 +48,12 @@ fn motion<T: Real>(bytes: &mut Unstructured<'_>, time_s: T) -> Result<CMotion<T>
     })
 }
 
-/// Whether all values of a motion are finite.
+/// Returns true if all values of a motion are finite.
 fn sound<T: Real>(m: &CMotion<T>) -> bool {
     Motion::from(m).is_finite()
 }
 
-/// Asserts that both texts of an error are terminated by a zero and are not empty.
+/// Asserts that both texts of an error are zero-terminated and not empty.
 fn told(error: &CError) {
     assert!(error.name.contains(&0) && error.rule.contains(&0));
     assert!(error.name[0] != 0 && error.rule[0] != 0);
@@ -267,8 +266,7 @@ laws! {
         jbf_rate_and_state_f64_init jbf_rate_and_state_f64_effect jbf_rate_and_state_f64_start jbf_rate_and_state_f64_step jbf_rate_and_state_f64_predict;
 }
 
-/// Checks that the C interface of any law, in either precision, has the results of the core and
-/// reports rejected input by a code.
+/// Checks the property of this module, for any law in either precision.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     assert_eq!(RUNS.len(), jbf_c::SIZES.len());
     let run = bytes.choose(RUNS)?;

@@ -1,7 +1,7 @@
-//! Friction of a base law resists the motion.
+//! Property: the friction of any law resists the motion.
 //!
-//! The jump is not negative, the rest has the sign of the motion, and the force of a bristle does
-//! not exceed the level towards which it deflects.
+//! The part that jumps is not negative, the smooth part has the sign of the motion, and the force
+//! of a bristle does not exceed its friction level.
 
 use crate::bytes::{between, clock, number, parameters, step_s};
 use crate::steps::seen;
@@ -11,12 +11,12 @@ use jbf_core::effect::Effects;
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{Bearing, Chain, Motion, Real};
 
-/// Largest speed and load, SI.
+/// Largest speed and load, SI units.
 const LARGEST: f64 = 1e4;
 
-/// Laws whose force may exceed the current level.
+/// Laws whose friction force may exceed the present friction level.
 ///
-/// Their bristle has a separate damper, or their level falls late.
+/// Their bristle has a damper in parallel, or their level follows the speed with a delay.
 const FREER: [&str; 2] = ["lugre", "seven_parameter"];
 
 struct Along<'a, 'b>(&'a mut Unstructured<'b>);
@@ -86,9 +86,8 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     .unwrap_or(Ok(()))
 }
 
-/// Checks that the friction of any law resists a motion with jumps of the speed.
-///
-/// The parameters are anywhere within their bounds.
+/// Checks the property of this module, for any parameters within their bounds and a motion with
+/// jumps of the speed.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

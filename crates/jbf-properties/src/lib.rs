@@ -1,7 +1,8 @@
 //! Properties of `jbf-core` and `jbf-c` that hold for any input.
 //!
-//! Each is a function of bytes that panics if the property is violated. `cargo fuzz` generates the
-//! bytes (`crates/jbf-core/fuzz`); `cargo test -p jbf-properties` uses a million seeded strings.
+//! Each property is a function of bytes that panics if the property is violated. `cargo fuzz`
+//! generates the bytes (`crates/jbf-core/fuzz`); `cargo test -p jbf-properties` uses a million
+//! random byte strings with known seeds.
 
 mod bytes;
 mod chain;
@@ -21,28 +22,28 @@ pub use steps::all_seen;
 
 use arbitrary::{Result, Unstructured};
 
-/// A function that builds a case from the input and checks the property.
+/// Function that draws a case from the input and checks the property.
 pub type Property = fn(&mut Unstructured<'_>) -> Result<()>;
 
-/// A property.
+/// Property with its name and the number of its tests.
 #[derive(Clone, Copy)]
 pub struct Entry {
     /// Name of the property and of its fuzz target.
     pub name: &'static str,
-    /// The property itself. An error only means that the bytes are exhausted.
+    /// Function that checks the property; an error means only that the input is exhausted.
     pub holds: Property,
-    /// Number of byte strings in the seeded test, in thousands.
+    /// Number of byte strings in the test with known seeds, in thousands.
     pub thousands: u32,
 }
 
 macro_rules! all {
     ($($module:ident $thousands:literal,)*) => {
-        /// All properties.
+        /// List of all properties.
         pub const ALL: &[Entry] = &[
             $(Entry { name: stringify!($module), holds: $module::holds, thousands: $thousands },)*
         ];
         $(
-            /// The property of that name as a function of bytes.
+            /// Checks the property of this name with `data` as its input, for the fuzzer.
             pub fn $module(data: &[u8]) {
                 let _ = $module::holds(&mut Unstructured::new(data));
             }

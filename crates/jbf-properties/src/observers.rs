@@ -1,4 +1,4 @@
-//! Observers with any valid gain stay within the bounds of their inputs.
+//! Property: the estimates of observers with any valid gain stay within the bounds of their inputs.
 
 use crate::bytes::{between, number, rounding};
 use crate::steps::seen;
@@ -7,7 +7,7 @@ use jbf_core::observer::coulomb::State;
 use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::Real;
 
-/// Checks that the speed estimate converges to at most the value that its inputs sustain.
+/// Checks that the speed estimate converges to at most the speed that its inputs sustain.
 fn velocity<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let (gain, damping) = (between(bytes, 1e-3, 1e5)?, between(bytes, 0.0, 1e4)?);
     let (input, dt_s) = (between(bytes, 0.0, 1e5)?, between(bytes, 1e-6, 1.0)?);
@@ -35,7 +35,7 @@ fn velocity<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Checks that the friction level stays within its limit for any input.
+/// Checks that the estimated friction level stays within its limit for any input.
 fn coulomb<T: Real + Default>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let exponent = if bytes.arbitrary()? {
         1.0
@@ -70,7 +70,7 @@ fn coulomb<T: Real + Default>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Checks that both observers, in either precision, stay within the bounds of their inputs.
+/// Checks the property of this module, for both observers in either precision.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     match bytes.int_in_range(0..=3)? {
         0 => velocity::<f32>(bytes),

@@ -1,4 +1,5 @@
-//! The bench's shaft under any friction: finite, passive, and with bounded work per step.
+//! Property: the motion of the simulated shaft with any friction is finite, friction is passive,
+//! and the number of trials per step is bounded.
 
 use crate::bytes::{between, clock, effects, number, parameters};
 use crate::steps::seen;
@@ -13,14 +14,15 @@ use jbf_core::{Bearing, Chain, Friction, Real};
 /// Largest load, N.
 const LARGEST: f64 = 1e4;
 
-/// Most evaluations of friction per step: both paths to the root, and the evaluation at rest.
+/// Largest number of evaluations of friction per step: for both solution methods, and for the shaft
+/// at rest.
 const MOST_TRIALS: u32 = 56;
 
 thread_local! {
     static TRIALS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// A law that counts how often it is advanced.
+/// Law that counts the calls that advance it.
 #[derive(Clone, Copy, Debug)]
 struct Counted<L>(L);
 
@@ -136,9 +138,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     with_law(page.name, bearing, Some(104.0), &values, clock, turning).unwrap_or(Ok(()))
 }
 
-/// Checks that a motor's shaft with any law and effects stays finite and needs few trials per step.
-///
-/// Voltages and loads jump.
+/// Checks the property of this module, for any law and effects; voltages and loads jump.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

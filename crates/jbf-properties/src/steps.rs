@@ -1,4 +1,4 @@
-//! Counts the steps that were checked: a property that checks none is not tested.
+//! Counter of checked steps, to detect a property that checks nothing.
 
 use core::cell::Cell;
 
@@ -6,12 +6,12 @@ thread_local! {
     static SEEN: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Counts one step.
+/// Counts one checked step.
 pub fn seen() {
     SEEN.set(SEEN.get() + 1);
 }
 
-/// Number of steps that this thread has checked.
+/// Returns the number of steps that this thread has checked.
 #[must_use]
 pub fn all_seen() -> u64 {
     SEEN.get()

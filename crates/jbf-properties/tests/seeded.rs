@@ -1,4 +1,4 @@
-//! Seeded random inputs: every property holds for each. A failure prints its seed.
+//! Tests of every property with random inputs from known seeds; a failure prints its seed.
 //!
 //! | variable | meaning |
 //! | --- | --- |
@@ -13,10 +13,10 @@ use rand_pcg::Pcg64Mcg;
 use std::panic::{catch_unwind, resume_unwind};
 use std::time::Instant;
 
-/// Longest input, bytes: several dozen steps.
+/// Longest input, bytes; it is sufficient for several dozen steps.
 const LONGEST: usize = 512;
 
-/// Returns the input of a seed; most inputs are short, some are long.
+/// Fills the buffer with the input of a seed and returns it; most inputs are short, some are long.
 fn input(seed: u64, buffer: &mut [u8; LONGEST]) -> &[u8] {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let longest = LONGEST >> (random.next_u32() % 4);
@@ -34,7 +34,7 @@ fn number(variable: &str) -> Option<u64> {
 /// Number of inputs of all properties together without `JBF_ALL=1`.
 const FAST_CASES: u64 = 200_000;
 
-/// Number of inputs of one property: all, or its share of the default number.
+/// Number of inputs of one property: all with `JBF_ALL=1`, otherwise a part of [`FAST_CASES`].
 fn usual_cases(entry: &Entry) -> u64 {
     let all = u64::from(entry.thousands) * 1000;
     if number("JBF_ALL") == Some(1) {

@@ -1,4 +1,4 @@
-//! Parallel evaluation of many parameter sets of the journal law.
+//! Python class for the parallel evaluation of many parameter sets of the journal law.
 
 use crate::pool::on_pool;
 use jbf_batch::{Batch, Float, Method, Speeds};
@@ -14,7 +14,8 @@ fn wrong(error: impl ToString) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Properties shared by all sets; a set is a row of `f_m, U_tr_m_s, K0, gamma, load_n`.
+/// Bearing, time scale and integration method of many parameter sets; a set is a row of `f_m,
+/// U_tr_m_s, K0, gamma, load_n`.
 #[pyclass(frozen, module = "jbf._core")]
 pub struct BatchRig {
     bearing: Bearing,
@@ -61,7 +62,8 @@ impl BatchRig {
         })
     }
 
-    /// Computes friction coefficients into `out`, row by row, in double precision.
+    /// Computes friction coefficients into `out` in double precision, one row per sample and one
+    /// column per set.
     fn friction_f64(
         &self,
         py: Python<'_>,
@@ -74,7 +76,8 @@ impl BatchRig {
         self.friction(py, &sets, &speeds, each, dt_s, out)
     }
 
-    /// Computes friction coefficients into `out`, row by row, in single precision.
+    /// Computes friction coefficients into `out` in single precision, one row per sample and one
+    /// column per set.
     fn friction_f32(
         &self,
         py: Python<'_>,
@@ -87,7 +90,8 @@ impl BatchRig {
         self.friction(py, &sets, &speeds, each, dt_s, out)
     }
 
-    /// Sums of squared deviations from `data`, one per set, in double precision.
+    /// Returns the sum of squared deviations of the friction coefficients from `data`, one per set,
+    /// in double precision.
     fn squares_f64<'py>(
         &self,
         py: Python<'py>,
@@ -100,7 +104,8 @@ impl BatchRig {
         self.squares(py, &sets, &speeds, each, dt_s, &data)
     }
 
-    /// Sums of squared deviations from `data`, one per set, in single precision.
+    /// Returns the sum of squared deviations of the friction coefficients from `data`, one per set,
+    /// in single precision.
     fn squares_f32<'py>(
         &self,
         py: Python<'py>,

@@ -1,10 +1,10 @@
-//! A bearing passed from Python as a dictionary of its sizes.
+//! Bearing passed from Python as a dictionary of its sizes.
 
 use jbf_core::{Bearing, Error};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Sizes of [`Bearing`], by name.
+/// Sizes of a [`Bearing`], from a dictionary with these keys.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Sizes {
@@ -17,7 +17,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Returns the bearing, checked.
+    /// Returns the bearing with these sizes, or a `ValueError` if a size is invalid.
     pub fn checked(self) -> PyResult<Bearing> {
         Bearing::new()
             .with_radius_m(self.radius_m)
@@ -31,7 +31,7 @@ impl Sizes {
     }
 }
 
-/// Converts an error of the core to a Python error.
+/// Converts an error of `jbf_core` to a `ValueError`.
 pub fn refused(error: Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

@@ -1,4 +1,4 @@
-//! Catalogue of laws and effects, as dictionaries.
+//! Catalogues of laws and effects, as lists of dictionaries.
 
 use jbf_core::effect::{moves_jumps, peaks, spreads_jumps, type_names, Parameter, CATALOGUE};
 use jbf_core::law;
@@ -26,7 +26,7 @@ fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, P
     Ok(out)
 }
 
-/// All effects of the catalogue, in the order of the signal chain.
+/// Descriptions of all effects, in the order of the signal chain.
 #[pyfunction]
 pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let out = PyList::empty(py);
@@ -62,7 +62,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     Ok(out)
 }
 
-/// All base laws with their parameters.
+/// Descriptions of all laws with their parameters.
 #[pyfunction]
 pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let out = PyList::empty(py);

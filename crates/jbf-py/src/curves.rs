@@ -1,4 +1,4 @@
-//! Curves of the law without effects: film integrals, transition eccentricity, Stribeck curve.
+//! Curves of a law without effects: film integrals, transition eccentricity, Stribeck curve.
 
 use crate::bearing::{refused, Sizes};
 use jbf_core::film::FilmIntegrals;
@@ -7,7 +7,8 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Film integrals J11, J12, J22 at an eccentricity ratio in [0, 1).
+/// Film integrals J11, J12, J22 at an eccentricity ratio in [0, 1), equations (3.11) to (3.13) of
+/// Cohn (1998).
 #[pyfunction]
 pub fn film_integrals(eps: f64) -> PyResult<(f64, f64, f64)> {
     if !(0.0..1.0).contains(&eps) {
@@ -19,7 +20,7 @@ pub fn film_integrals(eps: f64) -> PyResult<(f64, f64, f64)> {
     Ok((j.j11, j.j12, j.j22))
 }
 
-/// Transition eccentricity for a load number, equation (3.20).
+/// Transition eccentricity for a load number, equation (3.20) of Cohn (1998).
 #[pyfunction]
 pub fn transition_eccentricity(load_number: f64) -> PyResult<f64> {
     if !(load_number > 0.0 && load_number.is_finite()) {

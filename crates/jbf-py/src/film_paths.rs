@@ -1,10 +1,10 @@
-//! Cache of the paths of films along one motion.
+//! Cache of the states of films along one motion.
 //!
-//! Each of the thirty effects after the film is tried on the same path, and a search returns to
-//! earlier parameters.
+//! A diagnosis tries each of thirty effects with the same film, and a search returns to earlier
+//! parameters.
 //!
-//! The key of a path contains every number that it depends on, to the bit, so that the cache
-//! changes no result (python/tests/estimation/test_transients.py).
+//! The key of a path contains every number on which it depends, bit for bit, so that the cache does
+//! not change any result (python/tests/estimation/test_transients.py).
 
 use jbf_core::film_path::{FilmStep, Place};
 use jbf_core::{Bearing, Clock};
@@ -12,16 +12,16 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Number of cached paths per motion: a search alternates between a few parameter sets.
+/// Number of cached paths per motion; a search alternates between a few parameter sets.
 const KEPT: usize = 4;
 
-/// Number of states cached by one process, of 24 bytes each; beyond it paths are computed each
-/// time.
+/// Largest number of cached states in one process, of 24 bytes each; further paths are computed
+/// each time.
 const MOST_PLACES: usize = 12_000_000;
 
 static PLACES: AtomicUsize = AtomicUsize::new(0);
 
-/// Quantities, other than the motion, on which the path of a journal's film depends.
+/// Key of a cached path: all quantities, except the motion, on which the states of a film depend.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Film {
     pub bearing: Option<Bearing>,
@@ -31,8 +31,9 @@ pub struct Film {
     pub bits: [u64; 3],
 }
 
-/// States of a film, with or without slopes, and the index of the step that leads to each sample,
-/// for samples with a step.
+/// States of a film along a motion, with or without derivatives.
+///
+/// It also contains, for each sample that a step leads to, the index of that step.
 pub struct FilmPath {
     pub places: Vec<Place>,
     pub has_slopes: bool,
@@ -40,7 +41,7 @@ pub struct FilmPath {
 }
 
 impl FilmPath {
-    /// Returns the path in the form of a prediction.
+    /// Returns the path in the form for a prediction.
     pub fn kept(&self) -> jbf_predict::FilmPath<'_> {
         jbf_predict::FilmPath {
             places: &self.places,
@@ -49,23 +50,23 @@ impl FilmPath {
     }
 }
 
-/// Steps of a film that a motion requires, and whether all are under one load.
+/// Integration steps of a film along a motion, and whether the load is constant.
 pub struct Steps {
     pub every: Vec<FilmStep>,
     pub one_load: bool,
     pub ends: Arc<[u32]>,
 }
 
-/// Cache along one motion.
+/// Content of the cache along one motion.
 #[derive(Default)]
 struct Kept {
-    /// Paths with their films, the most recently used last.
+    /// Paths with their keys, the most recently used last.
     paths: VecDeque<(Film, Arc<FilmPath>)>,
-    /// Steps with their greatest length, s.
+    /// Integration steps, with their greatest length, s.
     steps: Option<(f64, Arc<Steps>)>,
 }
 
-/// Cached paths and steps along one motion.
+/// Cache of paths and integration steps along one motion.
 #[derive(Default)]
 pub struct FilmPaths(Mutex<Kept>);
 
@@ -74,7 +75,7 @@ impl FilmPaths {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the steps of at most this length, s, from the cache or from `make`.
+    /// Returns the integration steps of at most `longest_s`, from the cache or from `make`.
     pub fn steps(&self, longest_s: f64, make: impl FnOnce() -> Steps) -> Arc<Steps> {
         if let Some((of, steps)) = &self.lock().steps {
             if *of == longest_s {
@@ -86,7 +87,7 @@ impl FilmPaths {
         made
     }
 
-    /// Returns the path of a film if it is cached, with slopes if requested.
+    /// Returns the path of a film if it is cached, and has derivatives if `with_slopes`.
     pub fn kept(&self, film: &Film, with_slopes: bool) -> Option<Arc<FilmPath>> {
         let paths = &mut self.lock().paths;
         let at = paths
@@ -98,9 +99,10 @@ impl FilmPaths {
         Some(path)
     }
 
-    /// Stores the path of a film.
+    /// Stores the path of a film in the cache.
     ///
-    /// It replaces a path of the same film or, if the cache is full, the least recently used path.
+    /// The path replaces one of the same film or, if the cache is full, the least recently used
+    /// path.
     pub fn keep(&self, film: Film, path: Arc<FilmPath>) {
         let paths = &mut self.lock().paths;
         if let Some(at) = paths.iter().position(|(of, _)| *of == film) {

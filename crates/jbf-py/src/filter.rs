@@ -1,4 +1,4 @@
-//! First-order filter along samples, which whitens or generates first-order noise.
+//! First-order filter along samples, to whiten or generate autocorrelated noise.
 
 use numpy::ndarray::{ArrayD, Axis};
 use numpy::{IntoPyArray, PyArrayDyn, PyReadonlyArrayDyn};
@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Computes `y(t) = now[0] x(t) + now[1] x(t - 1) - before y(t - 1)` along the first axis of values
-/// of shape (n,) or (n, k), from rest.
+/// of shape (n,) or (n, k); earlier values are zero.
 ///
 /// # Errors
 /// If the values have another shape.
@@ -32,7 +32,7 @@ pub fn first_order_filter<'py>(
     Ok(y.into_pyarray(py))
 }
 
-/// Filters rows of `width` values in place.
+/// Filters n rows of `width` values in place.
 fn filter(now: [f64; 2], before: f64, width: usize, values: &mut [f64]) {
     let mut rest = vec![0.0; width];
     for row in values.chunks_exact_mut(width.max(1)) {

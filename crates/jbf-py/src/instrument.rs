@@ -1,5 +1,5 @@
-//! Instrument alone: the response of its effects to a force, and the derivatives with respect to
-//! their parameters.
+//! Response of the instrument effects to a force, and its derivatives with respect to their
+//! parameters.
 
 use crate::bearing::refused;
 use jbf_core::effect::Effects;
@@ -8,11 +8,11 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Number of parameters per pass; an instrument has few.
+/// Number of parameters per pass; an instrument has few parameters.
 const LANES: usize = 4;
 
-/// Reading (N) for a force (N) at times (s) that is linear between the samples, and its
-/// derivatives.
+/// Computes the reading (N) for a force (N) at times (s) that is linear between the samples, and
+/// its derivatives.
 ///
 /// The derivatives are with respect to every parameter, shape (n, parameters). `effects` are pairs
 /// of a name and its parameter values.
@@ -52,7 +52,8 @@ pub fn read_force<'py>(
     Ok((values.into_pyarray(py), shaped.into_pyarray(py)))
 }
 
-/// The effects, with derivatives with respect to the parameters from number `first` on.
+/// Creates the effects, with derivatives with respect to the `LANES` parameters from number `first`
+/// on.
 fn lifted(
     effects: &[(String, Vec<f64>)],
     first: usize,

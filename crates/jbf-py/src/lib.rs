@@ -1,6 +1,7 @@
-//! Python bindings of `jbf-core`: arrays in, arrays out, with the interpreter lock released.
+//! Python bindings of `jbf-core`, one file per Python type.
 //!
-//! One file per Python type; no physics here.
+//! Input and output are arrays, and the global interpreter lock is released during a computation.
+//! The bindings contain no physics.
 
 mod batch;
 mod bearing;
@@ -22,7 +23,7 @@ use pyo3::prelude::*;
 /// Adds every class and function to the extension module `jbf._core`.
 ///
 /// # Errors
-/// Those of the interpreter.
+/// Errors of the Python interpreter.
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;

@@ -1,4 +1,4 @@
-//! Imposed motion of one run, checked once and stored in Rust.
+//! Python class of the imposed motion of one run, checked once and stored in Rust.
 
 use crate::film_paths::FilmPaths;
 use jbf_core::run::Record;
@@ -6,7 +6,7 @@ use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Imposed motion of one run: arrays of the same length; Python may set attributes on it.
+/// Imposed motion of one run, as arrays of the same length; Python may set further attributes.
 #[pyclass(frozen, dict, module = "jbf._core")]
 pub struct Motion {
     time_s: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Cached paths of films along this motion.
+    /// Returns the cache of the states of films along this motion.
     pub fn film_paths(&self) -> &FilmPaths {
         &self.paths
     }

@@ -1,7 +1,7 @@
 //! Thread pool of the process.
 //!
-//! A forked process (Python's default for worker processes on Linux) has none of its parent's
-//! threads. rayon's global pool assumes that they exist and waits for them forever. Each process
+//! A forked process (the default for worker processes on Linux) has no threads of its parent. The
+//! global pool of rayon expects these threads and would wait for them forever. Each process
 //! therefore creates its own pool when it first needs one.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// Pool of this process; `None` if threads cannot be created.
+/// Returns the pool of this process; `None` if threads cannot be created.
 fn pool() -> Option<Arc<ThreadPool>> {
     let mut kept = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     match kept.take() {

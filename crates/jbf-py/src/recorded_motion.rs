@@ -1,4 +1,5 @@
-//! Smoother of a recorded motion, and whitening of residuals for its errors.
+//! Python classes for the smoother of a recorded motion, and for the whitening of residuals that
+//! contain its errors.
 
 use jbf_motion::{
     estimate, log_likelihood, lower_bound, smooth, Known, LinearReading, Passes, ReadingErrors,
@@ -11,7 +12,7 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Readings of a motion at n instants.
+/// Readings of a motion at n instants, with their relative standard errors.
 #[pyclass(module = "jbf._core", frozen)]
 pub struct MotionReadings {
     time: Vec<f64>,
@@ -24,7 +25,8 @@ pub struct MotionReadings {
     assigned: f64,
 }
 
-/// Attributes of `jbf.records.motion.readings.ReadingErrors`.
+/// Error variances of the readings, from the attributes of
+/// `jbf.records.motion.readings.ReadingErrors`.
 #[derive(FromPyObject)]
 pub struct Errors {
     position_variance: f64,
@@ -35,10 +37,10 @@ pub struct Errors {
     velocity_delay_s: f64,
 }
 
-/// Variances of position, velocity and time stamps, the intensity, and the factors.
+/// Estimated variances of position, velocity and time stamps, the intensity, and its factors.
 type Estimated<'py> = (f64, f64, f64, f64, Bound<'py, PyArray1<f64>>);
 
-/// Coefficients, values and variances of linear readings, and `jbf_motion::Record::continues`.
+/// Linear readings: coefficients, values and variances, and `jbf_motion::Record::continues`.
 type Linear<'py> = (
     PyReadonlyArray2<'py, f64>,
     PyReadonlyArray1<'py, f64>,
@@ -58,7 +60,7 @@ impl Errors {
     }
 }
 
-/// Calls a function that is generic over the order of the motion.
+/// Calls a function that is generic over the order of the motion (3 or 4).
 macro_rules! of_order {
     ($order:expr, $function:ident, $($argument:expr),*) => {
         match $order {
@@ -85,7 +87,8 @@ impl MotionReadings {
         }
     }
 
-    /// Returns linear readings and shared factors, if there is one for each instant and each step.
+    /// Converts linear readings and shared factors; there must be one for each instant and each
+    /// step.
     fn linear(&self, read: &Linear<'_>) -> PyResult<(Vec<LinearReading>, Vec<bool>)> {
         let (rows, values) = (read.0.as_array(), read.1.as_array());
         let (variances, continues) = (read.2.as_array(), read.3.as_array());
@@ -103,7 +106,7 @@ impl MotionReadings {
         Ok(((0..n).map(reading).collect(), continues.to_vec()))
     }
 
-    /// Returns the arrays as vectors, if they have n - 1 and n values.
+    /// Converts the arrays to vectors; they must have n - 1 and n values.
     fn steps_and_samples(
         &self,
         corners: &PyReadonlyArray1<'_, f64>,
@@ -121,7 +124,7 @@ impl MotionReadings {
 
 #[pymethods]
 impl MotionReadings {
-    /// Creates readings from arrays of n values; see `jbf_motion::Record`.
+    /// Creates the readings of a motion from arrays of n values; see `jbf_motion::Record`.
     ///
     /// # Errors
     /// If the lengths differ.
@@ -164,7 +167,7 @@ impl MotionReadings {
         Ok(read)
     }
 
-    /// Log-likelihood of the readings; see `jbf_motion::log_likelihood`.
+    /// Computes the log-likelihood of the readings; see `jbf_motion::log_likelihood`.
     ///
     /// # Errors
     /// If the arrays have other lengths, or the order is neither 3 nor 4.
@@ -184,7 +187,8 @@ impl MotionReadings {
         })
     }
 
-    /// Lower bound of the log-likelihood, marginal over the factors; see `jbf_motion::lower_bound`.
+    /// Computes a lower bound of the log-likelihood, marginal over the factors; see
+    /// `jbf_motion::lower_bound`.
     ///
     /// # Errors
     /// As for `log_likelihood`.
@@ -209,7 +213,7 @@ impl MotionReadings {
         })
     }
 
-    /// Posterior of the motion; see `jbf_motion::smooth`.
+    /// Computes the posterior distribution of the motion; see `jbf_motion::smooth`.
     ///
     /// # Errors
     /// As for `log_likelihood`.
@@ -235,12 +239,13 @@ impl MotionReadings {
             .with(&errors.of_readings(), &corners, &speed, using)
     }
 
-    /// Estimates the errors of the readings and the factors of the intensity from start values; see
-    /// `jbf_motion::estimate`.
+    /// Estimates the error variances of the readings, the intensity and its factors from start
+    /// values; see `jbf_motion::estimate`.
     ///
-    /// `known` is "nothing", "intensity" or "everything"; see `jbf_motion::Known`. `linear` are measured linear functions of the motion, with their coefficients of position,
-    /// velocity and acceleration, (n, 3), values and variances. Returns the variances of position,
-    /// velocity and time stamps, the intensity and the factors.
+    /// `known` is "nothing", "intensity" or "everything"; see `jbf_motion::Known`. `linear` are
+    /// measured linear functions of the motion, given by their coefficients of position, velocity
+    /// and acceleration, (n, 3), values and variances. Returns the variances of position, velocity
+    /// and time stamps, the intensity and the factors.
     ///
     /// # Errors
     /// As for `log_likelihood`.
@@ -296,7 +301,7 @@ impl MotionReadings {
     }
 }
 
-/// Posterior of a motion of order N at n instants.
+/// Posterior distribution of a motion of order N at n instants.
 #[pyclass(module = "jbf._core", frozen, get_all)]
 pub struct SmoothedMotion {
     /// Position and its first N - 1 derivatives at each instant, (n, N).
@@ -323,7 +328,7 @@ fn matrices<const N: usize>(py: Python<'_>, rows: &[[[f64; N]; N]]) -> Py<PyArra
         .unbind()
 }
 
-/// Whitens columns of residuals that contain errors of the motion; see `jbf_motion::whiten`.
+/// Whitens columns of residuals that contain errors of a motion; see `jbf_motion::whiten`.
 ///
 /// Returns the columns, (n, m), and the logarithm of the determinant of their covariance.
 ///
@@ -369,7 +374,7 @@ pub fn whiten_motion_errors<'py>(
     Ok((whitened.into_pyarray(py), log_determinant))
 }
 
-/// Errors of a motion and their effect on n residuals.
+/// Posterior of a motion, and the sensitivities of n residuals to its errors.
 struct Chain<'a> {
     posterior: ArrayView3<'a, f64>,
     gain: ArrayView3<'a, f64>,
@@ -378,7 +383,7 @@ struct Chain<'a> {
 }
 
 impl Chain<'_> {
-    /// Returns whether the arrays have the shapes for a motion of this order.
+    /// Returns true if the arrays have the shapes for a motion of this order.
     fn fits(&self, order: usize) -> bool {
         let n = self.variance.len();
         self.posterior.dim() == (n, order, order)

@@ -1,11 +1,12 @@
-//! Distribution of work of different sizes to all cores, the longest first, so that all cores
-//! finish at about the same time.
+//! Distribution of jobs of different sizes to all cores.
+//!
+//! The longest jobs are started first, so that all cores finish at about the same time.
 
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Applies `work` to every job and returns the results in the order of `jobs`.
+/// Applies `work` to every job in parallel and returns the results in the order of `jobs`.
 ///
 /// # Errors
 /// The first error, in the order of `jobs`.

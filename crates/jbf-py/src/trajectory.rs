@@ -1,4 +1,4 @@
-//! Trajectories to a tolerance: many runs in parallel, distributed to threads.
+//! Trajectories of a film with a given accuracy: many runs in parallel.
 
 mod lanes;
 
@@ -13,24 +13,25 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-/// Imposed speed: `(amplitude, omega, bias)` of a sine, or the times and speeds of a record.
+/// Imposed speed: amplitude (m/s), angular frequency (rad/s) and bias (m/s) of a sine, or the times
+/// (s) and speeds (m/s) of a record.
 #[derive(FromPyObject)]
 pub enum Imposed {
     Sine((f64, f64, f64)),
     Record((Vec<f64>, Vec<f64>)),
 }
 
-/// One run: its sample times and its motion.
+/// Run to be integrated: its sample times (s) and its imposed speed.
 struct Run {
     time_s: Vec<f64>,
     imposed: Imposed,
 }
 
-/// A number type, with derivatives if it has any.
+/// Number type of the integration, without or with derivatives.
 trait Number: Real + Send + Sync {
     fn slopes(&self) -> &[f64];
 
-    /// Integrates all runs of a film without inertia.
+    /// Integrates a film without inertia along all runs.
     fn reduced(
         film: &Journal<Self>,
         runs: &[Run],
@@ -62,18 +63,18 @@ impl<const N: usize> Number for Dual<N> {
     }
 }
 
-/// Result of one run.
+/// Result of one run: samples, derivatives and cost.
 struct Result1 {
     coefficient: Vec<f64>,
     x: Vec<f64>,
     y: Vec<f64>,
-    /// Derivatives of the coefficient, row by row.
+    /// Derivatives of the friction coefficient, one row per sample.
     slopes: Vec<f64>,
     cost: Cost,
 }
 
-/// Friction coefficient, eps cos(phi), eps sin(phi), number of steps, and, if requested,
-/// derivatives with respect to f_m, U_tr, K0 and gamma.
+/// Arrays of one run: friction coefficient, eps cos(phi), eps sin(phi), number of steps, and, if
+/// requested, derivatives with respect to f_m, U_tr, K0 and gamma.
 type Columns<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
@@ -133,7 +134,7 @@ fn all<T: Number, F: Film<T, N> + Sync, const N: usize>(
         .collect()
 }
 
-/// Settings of all runs, except the parameters of the law.
+/// Settings that all runs share, except the parameters of the law.
 struct Asked {
     bearing: Bearing,
     load_n: f64,
@@ -166,10 +167,11 @@ impl Asked {
     }
 }
 
-/// Integrates each of `runs`, `(sample times, motion)`, to about `tolerance` in friction.
+/// Integrates a film along each of `runs`, `(sample times, motion)`, with an error of the friction
+/// coefficient of about `tolerance`.
 ///
-/// With `derivatives`, also returns those of the friction with respect to f_m, U_tr, K0 and gamma,
-/// exact for the steps taken.
+/// With `derivatives`, the function also returns the derivatives of the friction coefficient with
+/// respect to f_m, U_tr, K0 and gamma, exact for the steps taken.
 #[pyfunction]
 #[pyo3(signature = (runs, *, model, clock, tolerance, start_time_s, start_eps, start_phi_rad, f_m,
                     u_tr_m_s, k0, gamma, radius_m, length_m, clearance_m, mass_kg, count,
@@ -259,7 +261,7 @@ pub fn trajectories<'py>(
         .collect()
 }
 
-/// Number of parameters of the law.
+/// Number of parameters of the journal law, and of derivatives of a dual number.
 const LANES: usize = 4;
 
 fn named<T>([f_m, u_tr_m_s, k0, gamma]: [T; LANES]) -> Parameters<T> {

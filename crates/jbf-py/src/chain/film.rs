@@ -1,8 +1,9 @@
-//! Paths of the film along motions, which chains that differ only after the film share.
+//! States of the film along motions, which chains that differ only in later stages share.
 //!
 //! Their derivatives with respect to the two parameters of the film are finite differences of paths
 //! that are computed in parallel. The relative error of a derivative is about 1e-6, negligible for
-//! searches and standard errors. Three lanes of one register cost a fifth of dual numbers.
+//! searches and standard errors. Three lanes of one register take a fifth of the time of dual
+//! numbers.
 
 use super::Chain;
 use crate::film_paths::{Film, FilmPath, Steps};
@@ -17,7 +18,7 @@ use jbf_core::{run, ParameterError};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Relative perturbation of a film parameter; a power of two is exact.
+/// Relative perturbation of a film parameter for a finite difference; a power of two is exact.
 const APART: f64 = 1.0 / 1_048_576.0;
 
 /// Indices of the parameters of the film in the description of the journal law.
@@ -26,14 +27,14 @@ const BY: Option<[usize; 2]> = <Journal<f64> as Law<f64>>::FILM_PARAMETERS;
 type Path = Option<Arc<FilmPath>>;
 
 impl Chain {
-    /// Returns the path of this chain's film along each motion.
+    /// Returns the path of the film of this chain along each motion.
     ///
     /// There is no path in any of these cases:
     ///
     /// - The law has no film path.
-    /// - An effect before the film changes it.
-    /// - The load changes.
-    /// - A step left the bearing.
+    /// - An effect at an earlier stage changes the film.
+    /// - The load varies within the run.
+    /// - The journal left the bearing in a step.
     pub(super) fn film_paths(
         &self,
         p: &[f64],
@@ -101,7 +102,7 @@ impl Chain {
         Ok(paths)
     }
 
-    /// Returns the law and, with `with_slopes`, its perturbation in each film parameter.
+    /// Returns the law, followed, if `with_slopes`, by the law with each film parameter perturbed.
     fn laws(
         &self,
         p: &[f64],
@@ -127,9 +128,9 @@ impl Chain {
     }
 }
 
-/// Combines the film's own lane and the perturbed lanes into states with slopes.
+/// Combines the path of the film and the perturbed paths into states with derivatives.
 ///
-/// `apart` holds the perturbations of the parameters.
+/// `apart` contains the perturbations of the parameters.
 fn joined(lanes: &[Vec<f64>], apart: [f64; 2]) -> Vec<Place> {
     let own = lanes[0].iter().copied().enumerate();
     own.map(|(k, film)| {
@@ -145,7 +146,7 @@ fn joined(lanes: &[Vec<f64>], apart: [f64; 2]) -> Vec<Place> {
     .collect()
 }
 
-/// Steps of a film that a motion requires.
+/// Integration steps of a film along a motion with inner steps of at most `inner_s`.
 fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     let every = RefCell::new(Vec::with_capacity(motion.len() * 9 / 8));
     let asks = jbf_core::Chain::round(FilmSteps::new(|s| every.borrow_mut().push(s)), (), None);
@@ -170,7 +171,7 @@ fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     }
 }
 
-/// Longest inner step along each motion, s.
+/// Computes the longest inner step along each motion, s.
 struct LongestInnerStep<'a> {
     max_step_s: f64,
     motions: &'a [&'a Motion],

@@ -1,4 +1,4 @@
-//! A law with effects, over whole runs: prediction and its derivatives.
+//! Python class of a law with effects: prediction along whole runs, and its derivatives.
 
 mod film;
 mod names;
@@ -19,7 +19,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use runs::{FilmRate, InnerSteps};
 
-/// A friction law with its effects; the parameters are passed with each call.
+/// Friction law with effects; parameter values are passed with each call.
 #[pyclass(frozen, module = "jbf._core")]
 pub struct Chain {
     law: &'static law::Info,
@@ -36,7 +36,7 @@ impl Chain {
         self.law.parameters.len() + theirs.sum::<usize>()
     }
 
-    /// Law and effects as a prediction model.
+    /// Returns law and effects as a prediction model.
     fn model(&self) -> Model<'_> {
         Model {
             law: self.law,
@@ -48,7 +48,7 @@ impl Chain {
         }
     }
 
-    /// Readings without derivatives, N, along each motion.
+    /// Computes the readings (N) along each motion, without derivatives.
     fn values(&self, p: &[f64], motions: &[&Motion]) -> Result<Vec<Vec<f64>>, ParameterError> {
         let paths = self.film_paths(p, false, motions)?;
         let jobs: Vec<_> = motions.iter().zip(&paths).collect();
@@ -118,7 +118,8 @@ impl Chain {
         })
     }
 
-    /// Dotted names of the parameters, in the order of every array here.
+    /// Names of the parameters in the form `effect.parameter`, in the order of every array of this
+    /// class.
     #[getter]
     fn parameter_names(&self) -> Vec<String> {
         let own = self.law.parameters.iter().map(|p| p.name.to_string());
@@ -130,7 +131,7 @@ impl Chain {
         own.chain(theirs).collect()
     }
 
-    /// Friction readings, N, one array per run.
+    /// Computes the friction readings, N, one array per run.
     fn predict<'py>(
         &self,
         py: Python<'py>,
@@ -145,9 +146,9 @@ impl Chain {
         Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
     }
 
-    /// Fastest rate of the law's film along any of the motions, 1/s.
+    /// Fastest rate at which the film of the law responds along any of the motions, 1/s.
     ///
-    /// Beyond `FASTEST_FILM_1_S` a prediction does not resolve the film.
+    /// A prediction does not resolve films with rates above `FASTEST_FILM_1_S`.
     fn film_rate_1_s(
         &self,
         parameters: PyReadonlyArray1<'_, f64>,
@@ -159,7 +160,7 @@ impl Chain {
         self.model().with_chain(p, film_rate).map_err(refused)
     }
 
-    /// Number of inner steps of a prediction along all motions, a measure of its cost.
+    /// Number of inner steps of a prediction along all motions, a measure of the computing time.
     fn inner_steps(
         &self,
         parameters: PyReadonlyArray1<'_, f64>,
@@ -174,9 +175,7 @@ impl Chain {
         self.model().with_chain(p, counted).map_err(refused)
     }
 
-    /// Readings (N) and their derivatives with respect to the parameters `which`.
-    ///
-    /// Returns for each run an array of n values and one of shape (n, len(which)).
+    /// Computes the readings (N) and their derivatives with respect to the parameters `which`.
     #[allow(clippy::type_complexity)]
     fn jacobian<'py>(
         &self,

@@ -1,11 +1,11 @@
-//! Look-up of laws, clocks and effects by their Python names.
+//! Look-up of laws, time scales and effects by their Python names.
 
 use jbf_core::effect::{Info, CATALOGUE};
 use jbf_core::{law, Clock};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Returns the law with this name.
+/// Returns the description of the law with this name, or a `ValueError`.
 pub fn law(name: &str) -> PyResult<&'static law::Info> {
     law::CATALOGUE
         .iter()
@@ -13,14 +13,15 @@ pub fn law(name: &str) -> PyResult<&'static law::Info> {
         .ok_or_else(|| PyValueError::new_err(format!("law {name:?} is not in the catalogue")))
 }
 
-/// Returns the clock with this name.
+/// Returns the time scale of the film with this name, or a `ValueError`.
 pub fn clock(name: &str) -> PyResult<Clock> {
     Clock::from_name(name).ok_or_else(|| {
         PyValueError::new_err(format!("clock {name:?} is not known: journal or thesis"))
     })
 }
 
-/// Returns the effect with this name, if it applies to the law.
+/// Returns the description of the effect with this name, or a `ValueError` if it does not apply to
+/// the law.
 pub fn effect(name: &str, law: &law::Info) -> PyResult<&'static Info> {
     let info = CATALOGUE
         .iter()

@@ -1,4 +1,4 @@
-//! Film rate and number of inner steps of a chain along motions.
+//! Rate of the film and number of inner steps of a chain along motions.
 
 use crate::motion::Motion;
 use jbf_core::law::Named;
@@ -6,7 +6,7 @@ use jbf_core::run;
 use jbf_core::spec::Using;
 use jbf_core::Chain;
 
-/// Fastest rate of the film along any of the motions, 1/s.
+/// Computes the fastest rate of the film along any of the motions, 1/s.
 pub struct FilmRate<'a> {
     pub motions: &'a [&'a Motion],
 }
@@ -23,7 +23,7 @@ impl Using<f64> for FilmRate<'_> {
     }
 }
 
-/// Number of inner steps along all motions.
+/// Computes the number of inner steps along all motions.
 pub struct InnerSteps<'a> {
     pub motions: &'a [&'a Motion],
     pub max_step_s: f64,

@@ -1,7 +1,7 @@
-//! Derivatives of the readings of a chain.
+//! Derivatives of the readings of a chain with respect to its parameters.
 //!
-//! Parameters are processed in groups, one per pass, and the passes of all runs are distributed to
-//! all cores.
+//! Parameters are processed in groups, one per pass over a run, and the passes of all runs are
+//! distributed to all cores.
 
 use super::Chain;
 use crate::film_paths::FilmPath;
@@ -10,11 +10,12 @@ use crate::share::longest_first;
 use jbf_core::ParameterError;
 use jbf_predict::parameter_passes;
 
-/// Values of a run, and their derivatives with respect to some parameters, row by row.
+/// Readings of a run, and their derivatives with respect to some parameters, one row per sample.
 pub type Slice = (Vec<f64>, Vec<f64>);
 
 impl Chain {
-    /// Readings and their derivatives with respect to the parameters `which`, for each motion.
+    /// Computes the readings and their derivatives with respect to the parameters `which`, for each
+    /// motion.
     pub(super) fn all_slopes(
         &self,
         p: &[f64],
@@ -46,7 +47,7 @@ impl Chain {
     }
 }
 
-/// Joins blocks of columns into one matrix of `n` rows.
+/// Joins the derivatives of several passes into one matrix of `n` rows and `columns` columns.
 fn side_by_side(parts: &[Slice], n: usize, columns: usize) -> Vec<f64> {
     if let [(_, only)] = parts {
         return only.clone();

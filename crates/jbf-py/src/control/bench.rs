@@ -1,4 +1,4 @@
-//! Simulated test bench: plant, encoder, noise, faults, and the log of a run.
+//! Simulation of a control loop: shaft, encoder, noise, faults, and the log of a run.
 
 use super::plant::{PlantSpec, Shaft};
 use super::running::Stepping;
@@ -10,11 +10,11 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-/// Faults, in steps of the loop; a fault that starts after the end of the run does not occur.
+/// Encoder faults, by the index of the time step; a fault after the end of the run does not occur.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Faults {
-    /// The counter is frozen from the first step until before the second.
+    /// Step from which the counter is frozen, and step at which it recovers.
     frozen: (usize, usize),
     /// Step at which the counter jumps.
     jump_at: usize,
@@ -22,7 +22,7 @@ pub struct Faults {
     jump_counts: i64,
 }
 
-/// Noise from a seed, identical on every machine.
+/// Random number generator for noise, with the same numbers for a seed on every machine.
 pub struct Noise {
     random: Pcg64Mcg,
     input_v: f64,
@@ -50,7 +50,7 @@ impl Noise {
 
 macro_rules! log {
     ($($name:ident),* $(,)?) => {
-        /// Log of a run, with one value per step.
+        /// Recorded signals of a run, with one value per time step.
         #[derive(Default)]
         pub struct Log {
             $($name: Vec<f64>,)*
@@ -78,7 +78,8 @@ log! {
     estimated_friction_v, correction_v, forward_v, output_v, learned_0, learned_1,
 }
 
-/// Runs the loop along a reference (value, rate) and a load (N), with one sample per step.
+/// Simulates the loop along a reference (value, rate) and a load (N), with one sample per time
+/// step.
 pub fn run(
     shaft: &mut dyn Shaft,
     looped: &mut dyn Stepping,

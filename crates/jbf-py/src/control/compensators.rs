@@ -1,4 +1,4 @@
-//! All compensators of the core, passed from Python as dictionaries with the key `kind`.
+//! Compensators of `jbf_core`, passed from Python as dictionaries with the key `kind`.
 
 use super::learning::LearningSpec;
 use super::observed::ObservedSpec;
@@ -13,12 +13,12 @@ use jbf_core::Real;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Number of entries of a look-up table on the bench.
+/// Number of entries of a look-up table.
 pub const ENTRIES: usize = 64;
-/// Number of cells of a lap on the bench.
+/// Number of cells of a lap in a repetitive compensator.
 const CELLS: usize = 256;
 
-/// A compensator, selected by its `kind`.
+/// Compensator with its settings, selected by the key `kind`.
 pub enum Spec {
     Nothing,
     Coulomb(CoulombSpec),
@@ -121,7 +121,7 @@ impl RepetitiveSpec {
 }
 
 impl Spec {
-    /// Builds the loop of `settings` with this compensator.
+    /// Creates the control loop of `settings` with this compensator.
     pub fn into_loop<T: Real>(self, settings: &LoopSpec) -> PyResult<Box<dyn Stepping>> {
         match self {
             Spec::Nothing => boxed::<T, _>(settings, NoCompensation),

@@ -1,5 +1,5 @@
-//! Constants that Python takes from the core: the thesis's bench, the gains of the control laws,
-//! and the flags of a loop.
+//! Constants of `jbf_core` for Python: the rig of Cohn (1998), the gains of the control laws, and
+//! the status flags of a loop.
 
 use super::compensators::ENTRIES;
 use jbf_core::controller::{BaseLaw, Status};
@@ -9,7 +9,7 @@ use jbf_core::{encoder, Bearing};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Sizes of the thesis's bearing, and its lubricant.
+/// Sizes of the bearing of Cohn (1998), and its lubricant.
 #[pyfunction]
 pub fn thesis_bearing(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let (d, b) = (PyDict::new(py), Bearing::THESIS);
@@ -22,8 +22,8 @@ pub fn thesis_bearing(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(d)
 }
 
-/// Drive, encoder and velocity observer of the thesis, the number of table entries, and the flags
-/// of a loop by name.
+/// Drive, encoder and velocity observer of Cohn (1998), the number of table entries, and the status
+/// flags of a loop by name.
 #[pyfunction]
 pub fn control_constants(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let (d, drive, thesis) = (PyDict::new(py), PyDict::new(py), Drive::THESIS);
@@ -44,8 +44,8 @@ pub fn control_constants(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(d)
 }
 
-/// Gains of the thesis's control law for a drive: k1 and k2 of the position law, or g and C of the
-/// velocity law.
+/// Gains of the control laws of Cohn (1998) for a drive: k1 and k2 for the position, or g and C for
+/// the velocity.
 #[pyfunction]
 pub fn control_gains(position: bool, damping_1_s: f64, input_rad_s2_v: f64) -> (f64, f64) {
     let drive = Drive::new(damping_1_s, input_rad_s2_v);

@@ -1,4 +1,4 @@
-//! The learning compensator, as passed from Python.
+//! Learning compensator, passed from Python.
 
 use super::settings::LoopSpec;
 use crate::bearing::{refused, Sizes};
@@ -8,7 +8,7 @@ use jbf_core::{Clock, Real};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Film that runs in the loop, and the settings of its learning; a gain of `None` is the thesis's.
+/// Film model and settings of a learning compensator; a gain of `None` is that of Cohn (1998).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct LearningSpec {
@@ -28,7 +28,7 @@ pub struct LearningSpec {
 }
 
 impl LearningSpec {
-    /// Builds the compensator for a loop.
+    /// Creates the learning compensator for a loop.
     pub fn compensator<T: Real>(self, settings: &LoopSpec) -> PyResult<Learning<T>> {
         let bearing = self.bearing.checked()?;
         let clock = Clock::from_name(&self.clock)

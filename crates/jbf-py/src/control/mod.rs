@@ -1,4 +1,4 @@
-//! The closed loop on the simulated bench: a run in, arrays out.
+//! Simulation of a control loop for Python: settings and reference as input, arrays as output.
 
 mod bench;
 mod compensators;
@@ -20,7 +20,7 @@ use pyo3::types::PyDict;
 use running::Stepping;
 use settings::LoopSpec;
 
-/// Value and rate of a periodic reference at `samples` steps of `dt_s` from zero.
+/// Values and rates of a periodic reference at `samples` time steps of `dt_s`, from time zero.
 #[pyfunction]
 #[pyo3(signature = (wave, low, high, frequency_rad_s, dt_s, samples))]
 #[allow(clippy::type_complexity)]
@@ -47,7 +47,7 @@ pub fn control_reference<'py>(
     Ok((value.into_pyarray(py), rate.into_pyarray(py)))
 }
 
-/// Runs a loop on the bench; every array has one value per step of the loop.
+/// Simulates a control loop; every array has one value per time step.
 #[pyfunction]
 #[pyo3(signature = (plant, loop_settings, compensator, reference, rate, load_n, faults, *, precision))]
 #[allow(clippy::too_many_arguments)]

@@ -1,4 +1,4 @@
-//! A friction model passed from Python, and the chain that is built from it.
+//! Friction model passed from Python, and the chain that is created from it.
 
 use crate::bearing::{refused, Sizes};
 use jbf_core::spec::Spec;
@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 
 pub use jbf_core::spec::Using;
 
-/// Law, effects and their values, in the order of the descriptions in the catalogue.
+/// Names of the law and the effects, and the values of their parameters in the order of the
+/// catalogue.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct ModelSpec {
@@ -21,7 +22,7 @@ pub struct ModelSpec {
 }
 
 impl ModelSpec {
-    /// Builds the chain and passes it on.
+    /// Creates the chain and passes it to the operation `then`.
     pub fn chain<T: Real, U: Using<T>>(&self, then: U) -> PyResult<U::Output> {
         let clock = Clock::from_name(&self.clock)
             .ok_or_else(|| PyValueError::new_err("clock must be journal or thesis"))?;

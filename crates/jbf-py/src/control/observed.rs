@@ -1,4 +1,4 @@
-//! The observer-corrected compensator, as passed from Python.
+//! Compensator with a friction model and an observer, passed from Python.
 
 use super::model::{ModelSpec, Using};
 use super::running::{boxed, Stepping};
@@ -11,7 +11,8 @@ use jbf_core::law::Named;
 use jbf_core::{Chain, Real};
 use pyo3::prelude::*;
 
-/// Model of the compensator, its settings, and the corrections that an earlier run learned.
+/// Friction model and settings of a compensator with an observer, and the corrections that an
+/// earlier run learned.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct ObservedSpec {
@@ -69,7 +70,7 @@ impl<T: Real> Using<T> for Carry<'_, T> {
 }
 
 impl ObservedSpec {
-    /// Builds the loop of `settings` with this compensator.
+    /// Creates the control loop of `settings` with this compensator.
     pub fn into_loop<T: Real>(self, settings: &LoopSpec) -> PyResult<Box<dyn Stepping>> {
         self.model.chain(Carry::<T> {
             spec: &self,

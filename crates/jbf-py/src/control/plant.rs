@@ -1,4 +1,4 @@
-//! Plant of the bench, with any law, behind one trait.
+//! Simulated shaft with any friction law, passed from Python.
 
 use super::model::{ModelSpec, Using};
 use crate::bearing::refused;
@@ -7,7 +7,7 @@ use jbf_core::plant::{Drive, Plant, State};
 use jbf_core::Chain;
 use pyo3::prelude::*;
 
-/// Motor and shaft, as passed from Python.
+/// Motor and shaft, from a dictionary with these keys.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct DriveSpec {
@@ -18,7 +18,7 @@ pub struct DriveSpec {
 }
 
 impl DriveSpec {
-    /// Returns the drive of the core.
+    /// Returns the drive in the form of `jbf_core`.
     pub fn drive(&self) -> Drive {
         Drive::new(self.damping_1_s, self.input_rad_s2_v)
             .with_volts_per_n(self.volts_per_n)
@@ -26,7 +26,7 @@ impl DriveSpec {
     }
 }
 
-/// The bench, as passed from Python.
+/// Simulated shaft with its drive and friction, from a dictionary with these keys.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct PlantSpec {
@@ -41,11 +41,11 @@ pub struct PlantSpec {
     inner_steps: u32,
 }
 
-/// A running plant.
+/// Simulated shaft in the course of a run, with any law.
 pub trait Shaft {
-    /// Advances one step of the loop under an input (V) and a load (N).
+    /// Advances by one time step of the loop under an input (V) and a load (N).
     fn tick(&mut self, input_v: f64, load_n: f64);
-    /// Present angle (rad), speed (rad/s) and friction (V).
+    /// Returns the present angle (rad), speed (rad/s) and friction (V).
     fn now(&self) -> [f64; 3];
 }
 
@@ -91,7 +91,7 @@ impl Using<f64> for Build<'_> {
 }
 
 impl PlantSpec {
-    /// Builds the plant, at rest, after a rest of the specified time.
+    /// Creates the shaft at rest, after a rest of the specified duration.
     pub fn build(&self, dt_s: f64, load_n: f64) -> PyResult<Box<dyn Shaft>> {
         let spec = self;
         self.model.chain(Build { spec, dt_s, load_n })?

@@ -1,4 +1,4 @@
-//! A loop with any compensator and any number type, behind one trait.
+//! Control loop with any compensator and any number type.
 
 use super::settings::LoopSpec;
 use jbf_core::compensator::Compensator;
@@ -7,9 +7,9 @@ use jbf_core::reference::Target;
 use jbf_core::Real;
 use pyo3::prelude::*;
 
-/// A running loop.
+/// Control loop in the course of a run, with any compensator and any number type.
 pub trait Stepping: Send {
-    /// Computes one step; the interface is double precision, whatever the internal number type.
+    /// Computes one step of the loop, with input and output in double precision.
     fn step(&mut self, counter: u32, target: Target<f64>) -> Parts<f64>;
 }
 
@@ -33,7 +33,7 @@ where
     }
 }
 
-/// Creates the loop of `settings` with a compensator, at its start.
+/// Creates the control loop of `settings` with a compensator, in its initial state.
 pub fn boxed<T: Real, C>(settings: &LoopSpec, compensator: C) -> PyResult<Box<dyn Stepping>>
 where
     C: Compensator<T> + Send + 'static,

@@ -1,4 +1,4 @@
-//! Settings of the loop around a compensator, as passed from Python.
+//! Settings of a control loop without its compensator, passed from Python.
 
 use super::plant::DriveSpec;
 use crate::bearing::refused;
@@ -9,9 +9,9 @@ use jbf_core::observer::{velocity, VelocityObserver};
 use jbf_core::{Error, Real};
 use pyo3::prelude::*;
 
-/// Assumed drive of the loop, its encoder, and the limits of trust in the encoder.
+/// Assumed drive and encoder of a control loop, and the limits for the detection of faults.
 ///
-/// The control law and the velocity observer are those of the thesis for that drive.
+/// The control law and the velocity observer are those of Cohn (1998) for this drive.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct LoopSpec {
@@ -27,7 +27,7 @@ pub struct LoopSpec {
 }
 
 impl LoopSpec {
-    /// Returns the control law.
+    /// Returns the control law of the loop.
     pub fn law(&self) -> BaseLaw<f64> {
         let drive = self.drive.drive();
         if self.position {
@@ -37,7 +37,7 @@ impl LoopSpec {
         }
     }
 
-    /// Builds the loop with a compensator.
+    /// Creates the control loop with a compensator.
     pub fn round<T: Real, C: Compensator<T>>(&self, compensator: C) -> PyResult<Controller<T, C>> {
         let drive = self.drive.drive();
         let top_speed_rad_s = drive.top_speed_rad_s();
@@ -60,8 +60,8 @@ impl LoopSpec {
         Controller::new(encoder, observer, law, compensator, limits, self.dt_s).map_err(refused)
     }
 
-    /// Returns the observer of Appendix E in position control, that of Appendix D in velocity
-    /// control.
+    /// Returns the velocity observer of Cohn (1998): that of Appendix E for position control, that
+    /// of Appendix D for velocity control.
     fn observer<T: Real>(&self) -> Result<VelocityObserver<T>, Error> {
         if self.position {
             let drive = self.drive.drive();

@@ -1,4 +1,4 @@
-//! Several runs of a film without inertia in the lanes of one thread.
+//! Integration of several runs of a film without inertia in the lanes of vector registers.
 
 use super::{one, Imposed, Result1, Run};
 use jbf_batch::{follow_side_by_side, Simd};
@@ -7,15 +7,16 @@ use jbf_core::law::journal::Journal;
 use jbf_core::ParameterError;
 use rayon::prelude::*;
 
-/// Number of runs in parallel. With eight, the serial output of the samples costs what the wider
-/// register saves.
+/// Number of runs that are integrated in parallel lanes.
+///
+/// With eight, the serial output of the samples takes as long as the wider register saves.
 const LANES: usize = 4;
 
-/// Number of runs below which a serial computation is faster.
+/// Smallest number of runs for which lanes are faster than a serial integration.
 const WORTH: usize = 3;
 
-/// Distributes all runs to the threads; the result is identical bit for bit to a serial
-/// computation.
+/// Integrates all runs on all threads; the result is identical bit for bit to that of a serial
+/// integration.
 pub fn all_in_lanes(
     film: &Journal<f64>,
     runs: &[Run],
@@ -47,8 +48,8 @@ pub fn all_in_lanes(
     Ok(found.into_iter().map(|(_, result)| result).collect())
 }
 
-/// Groups of at most `most` runs, with neighbours in different groups, because similar runs take
-/// similar time.
+/// Divides run indices into groups of at most `most`, with adjacent runs in different groups,
+/// because similar runs take similar times.
 fn dealt(runs: &[usize], most: usize) -> Vec<Vec<usize>> {
     let groups = runs.len().div_ceil(most);
     (0..groups)
@@ -60,7 +61,7 @@ fn is_record(run: &Run) -> bool {
     matches!(run.imposed, Imposed::Record(_))
 }
 
-/// Integrates runs of one kind, at most [`LANES`].
+/// Integrates a group of runs of one kind of motion, at most [`LANES`].
 fn together(
     film: &Journal<f64>,
     runs: &[&Run],

@@ -1,5 +1,7 @@
-//! Prints every fingerprint and whether it agrees with the table; ends with code 1 if one does not.
-//! `make bits` runs it in every build that a user may make; `--write FILE` writes the table anew.
+//! Prints every fingerprint and whether it agrees with the table; exits with code 1 if one does
+//! not.
+//!
+//! `make bits` runs this program in every supported build; `--write FILE` writes a new table.
 
 use jbf_trace::check;
 use std::fmt::Write;

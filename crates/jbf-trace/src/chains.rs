@@ -1,4 +1,5 @@
-//! Fingerprints of laws by name, effects by name, and laws with all effects that apply to them.
+//! Fingerprints (hashes of results) of laws, of effects, and of laws with all effects that apply to
+//! them.
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
@@ -33,7 +34,7 @@ impl<T> AsRef<[T]> for Starts<T> {
     }
 }
 
-/// Hashes every reading of a chain along the motion.
+/// Computes the hash of the readings of a chain along the common motion.
 struct Along;
 
 impl<T: Real> Using<T> for Along {
@@ -54,9 +55,9 @@ impl<T: Real> Using<T> for Along {
     }
 }
 
-/// Runs a law along the motion, with the effects for which `wanted` is true.
+/// Computes the hash of a law along the common motion, with the effects for which `wanted` is true.
 ///
-/// If the chain cannot be built, the result is the hash of no values.
+/// If the chain is invalid, the result is the hash of an empty sequence.
 fn along<T: Real>(page: &law::Info, wanted: impl Fn(&effect::Info) -> bool) -> Hash {
     let effects = effect::CATALOGUE
         .iter()
@@ -75,15 +76,15 @@ fn along<T: Real>(page: &law::Info, wanted: impl Fn(&effect::Info) -> bool) -> H
 
 type Take<'a> = &'a mut dyn FnMut(&'static str, &'static str, Hash);
 
-/// Fingerprints every law without effects.
+/// Passes the fingerprint of every law without effects to `take`.
 pub(crate) fn laws<T: Real>(take: Take<'_>) {
     for page in law::CATALOGUE {
         take("law", page.name, along::<T>(page, |_| false));
     }
 }
 
-/// Fingerprints every effect with the first law that it applies to, and with the effects that it
-/// requires.
+/// Passes the fingerprint of every effect to `take`, with the first law to which it applies and
+/// with the effects that it requires.
 pub(crate) fn effects<T: Real>(take: Take<'_>) {
     for info in effect::CATALOGUE {
         let mut laws = law::CATALOGUE.iter();
@@ -101,7 +102,7 @@ pub(crate) fn effects<T: Real>(take: Take<'_>) {
     }
 }
 
-/// Fingerprints every law with all effects that apply to it.
+/// Passes the fingerprint of every law with all effects that apply to it to `take`.
 pub(crate) fn together<T: Real>(take: Take<'_>) {
     for page in law::CATALOGUE {
         take("chain", page.name, along::<T>(page, |_| true));

@@ -1,4 +1,4 @@
-//! Fingerprints of trajectories to a tolerance.
+//! Fingerprints (hashes of results) of trajectories with a given accuracy.
 
 use crate::hash::Hash;
 use jbf_core::driver::{follow, Film, Sample, Sampled, Sine, Start};
@@ -26,7 +26,7 @@ fn hashed<T: Real, F: Film<T, N>, const N: usize>(film: &F, tolerance: f64) -> [
     hashes
 }
 
-/// Fingerprints both films, along a sine and along a record.
+/// Passes the fingerprints of both film models to `take`, along a sine and along a record.
 pub(crate) fn drivers<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {

@@ -1,4 +1,4 @@
-//! FNV-1a hash (Fowler, Noll & Vo), 64 bits: small, and any changed bit changes the hash.
+//! FNV-1a hash (Fowler, Noll & Vo) of 64 bits, which changes with any bit of the input.
 
 use jbf_core::Real;
 
@@ -15,7 +15,8 @@ impl Default for Hash {
 impl Hash {
     /// Adds a number to the hash.
     ///
-    /// Single precision is widened, which keeps every bit of a finite number.
+    /// A number in single precision is converted to double precision, which is exact for a finite
+    /// number.
     pub fn take<T: Real>(&mut self, number: T) {
         for byte in number.value().to_bits().to_le_bytes() {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);

@@ -1,11 +1,13 @@
-//! Fingerprints of all computations of `jbf-core` that take steps: laws, steppers, effects, whole
-//! chains, the driver, control loops, in single and double precision.
+//! Fingerprints (hashes of results) of all computations of `jbf-core` with time steps.
+//!
+//! They include laws, integration methods, effects, chains, trajectories and control loops, in
+//! single and double precision.
 //!
 //! A target computes correctly if its fingerprints equal those of [`TABLE`], to the last bit of
 //! every step.
 //!
-//! The crate is `no_std`, does not allocate and uses nothing of the platform. A microcontroller
-//! runs the same code and compares with the same table. [`check`] is the only function to call:
+//! The crate is `no_std`, does not allocate and does not depend on the platform. A microcontroller
+//! runs the same code and compares its results with the same table. Call [`check`]:
 //!
 //! ```
 //! let found = jbf_trace::check(|trace, expected| {
@@ -36,20 +38,20 @@ pub use table::TABLE;
 
 use jbf_core::Real;
 
-/// Fingerprint of one run.
+/// Fingerprint of one computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// Group of the run: `law`, `stepper`, `effect`, `chain`, `driver` or `loop`.
+    /// Group of the computation: `law`, `stepper`, `effect`, `chain`, `driver` or `loop`.
     pub group: &'static str,
-    /// Name of the run.
+    /// Name of the computation in its group.
     pub name: &'static str,
     /// Number type, `f32` or `f64`.
     pub kind: &'static str,
-    /// Hash of the bits of every step.
+    /// Hash of the results of every step.
     pub hash: u64,
 }
 
-/// Result of the comparison with [`TABLE`].
+/// Result of the comparison of all fingerprints with [`TABLE`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Found {
     /// Number of fingerprints equal to those of the table.
@@ -60,7 +62,8 @@ pub struct Found {
     pub unknown: u32,
 }
 
-/// Computes all fingerprints in one number type and passes each to `visit`.
+/// Computes all fingerprints with the number type `T`, whose name is `kind`, and passes each to
+/// `visit`.
 pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     steps::<T>(kind, visit);
     drivers::drivers::<T>(&mut |group, name, hash: Hash| {
@@ -73,8 +76,10 @@ pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     });
 }
 
-/// Computes the fingerprints of everything that a control loop may step: all except the driver,
-/// which is for analysis.
+/// Computes the fingerprints of all computations that a control loop may need, with the number type
+/// `T`, and passes each to `visit`.
+///
+/// Trajectories, which are for analysis, are not included.
 pub fn steps<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     let mut named = |group, name, hash: Hash| {
         visit(&Trace {
@@ -91,7 +96,9 @@ pub fn steps<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     loops::loops::<T>(&mut named);
 }
 
-/// Computes all fingerprints and passes each to `visit` with the value of the table.
+/// Computes all fingerprints in single and double precision, and compares them with [`TABLE`].
+///
+/// `visit` is called with each fingerprint and its hash in the table, if there is one.
 pub fn check(mut visit: impl FnMut(&Trace, Option<u64>)) -> Found {
     let mut found = Found::default();
     let mut one = |trace: &Trace| {

@@ -1,7 +1,6 @@
-//! Loops with every observer and compensator: encoder, velocity observer, control law, compensator,
-//! limit.
+//! Control loops with every observer and compensator, for fingerprints, benchmarks and firmware.
 //!
-//! The benchmarks and the firmware step the same loops.
+//! A loop consists of encoder, velocity observer, control law, compensator and output limit.
 
 use crate::hash::Hash;
 use crate::shaft::{asked, Shaft, COUNTS_PER_RAD, DRIVE, LOOP_STEPS, LOOP_STEP_S};
@@ -20,12 +19,12 @@ use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
 
 const LOAD_N: f64 = 104.0;
-/// Number of entries of a look-up table, and of cells of a lap.
+/// Number of entries of a look-up table, and of cells of a lap in a repetitive compensator.
 const ENTRIES: usize = 64;
 
-/// Operation on a loop with any compensator.
+/// Operation on a control loop with a compensator of any type.
 pub trait LoopVisitor<T: Real> {
-    /// Visits one loop, ready to start; `position` is true if its references are angles.
+    /// Performs the operation on one loop; `position` is true if its reference is an angle.
     fn visit<C: Compensator<T>>(
         &mut self,
         name: &'static str,
@@ -34,7 +33,7 @@ pub trait LoopVisitor<T: Real> {
     );
 }
 
-/// Creates the thesis's loop with a compensator.
+/// Creates the control loop of Cohn (1998) with a compensator, for position or velocity control.
 pub fn around<T: Real, C: Compensator<T>>(
     compensator: C,
     position: bool,
@@ -56,7 +55,7 @@ pub fn around<T: Real, C: Compensator<T>>(
     )
 }
 
-/// Creates the velocity observer of Appendix E.
+/// Creates the velocity observer of Appendix E of Cohn (1998).
 pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, ParameterError> {
     VelocityObserver::fed_forward(100.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, LOOP_STEP_S)
 }
@@ -83,7 +82,7 @@ fn parameters<T: Real>() -> Parameters<T> {
     }
 }
 
-/// Creates the reduced model, fitted to the thesis's loop.
+/// Creates a journal law without inertia, fitted to the loop of Cohn (1998).
 pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
     Ok(bare(Journal::new(
         &Bearing::THESIS,
@@ -93,7 +92,7 @@ pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
     )?))
 }
 
-/// Creates the full model, including inertia.
+/// Creates a journal law with inertia.
 pub fn full<T: Real>() -> Result<Bare<T, JournalFull<T>>, ParameterError> {
     Ok(bare(JournalFull::new(
         &Bearing::THESIS,
@@ -107,7 +106,7 @@ fn bare<T: Real, L>(law: L) -> Bare<T, L> {
     Bare::new(law, Bearing::THESIS.radius_m, DRIVE.volts_per_n, LOAD_N)
 }
 
-/// Creates the reduced model with an elastic contact.
+/// Creates a chain of a journal law without inertia and presliding.
 pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterError> {
     let stiffness_1_m = T::of(0.26 * COUNTS_PER_RAD / 0.0127);
     let effects = Bending::new(&[stiffness_1_m])?;
@@ -115,10 +114,11 @@ pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterE
     Ok(Whole::new(chain, DRIVE.volts_per_n, LOAD_N))
 }
 
-/// Effects of [`chained`].
+/// Set of effects in the chain of [`chained`].
 pub type Bending<T> = AsBristle<Presliding<T>>;
 
-/// Creates a model corrected by an observer, with the settings that `jbf control tune` computes.
+/// Creates a compensator with a friction model and an observer, with the settings that `jbf control
+/// tune` computes.
 pub fn observed<T: Real, M: Carried<T>>(
     model: M,
     position: bool,
@@ -139,7 +139,7 @@ pub fn observed<T: Real, M: Carried<T>>(
     Observed::new(model, &settings)
 }
 
-/// Creates the learning compensator of the thesis.
+/// Creates the learning compensator of Cohn (1998).
 pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> {
     let p = Parameters {
         f_m: T::of(0.26),
@@ -162,19 +162,19 @@ pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> 
     Learning::new(law, &settings)
 }
 
-/// Creates a look-up table against speed.
+/// Creates a compensator with a look-up table against speed.
 pub fn table<T: Real>() -> Result<Table<T, ENTRIES>, ParameterError> {
     let level = |i: usize| T::of(0.7 - 0.4 * i as f64 / (i as f64 + 8.0));
     Table::new(core::array::from_fn(level), Axis::Speed, 0.5, 0.01)
 }
 
-/// Creates a compensator that learns from lap to lap.
+/// Creates a repetitive compensator.
 pub fn repetitive<T: Real>() -> Result<Repetitive<T, ENTRIES>, ParameterError> {
     Repetitive::new(500, 0.6, 0.1, 0.02, 3.0, LOOP_STEP_S)
 }
 
-/// Visits every loop in velocity control, and those that differ for positions in position control
-/// too.
+/// Calls `visit` with every loop in velocity control, and with those that differ in position
+/// control.
 pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), ParameterError> {
     macro_rules! on {
         ($($name:literal, $position:literal: $compensator:expr;)*) => {
@@ -198,7 +198,7 @@ pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), ParameterErr
     Ok(())
 }
 
-/// Fingerprint of a loop with the shaft, including the loop's status.
+/// Computes the fingerprint of a loop with the simulated shaft, including the status flags.
 pub fn run<T: Real, C: Compensator<T>>(
     controller: &Controller<T, C>,
     position: bool,
@@ -220,8 +220,10 @@ pub fn run<T: Real, C: Compensator<T>>(
     hash
 }
 
-/// Every fifth step of the excitation is used: demanding for a loop, and short for a target that
-/// must emulate double precision.
+/// Interval between the steps of the excitation that are used.
+///
+/// A fifth of the steps is a demanding test, and short enough for a target that emulates double
+/// precision.
 const STRIDE: u32 = 5;
 
 struct Take<'a>(&'a mut dyn FnMut(&'static str, &'static str, Hash));
@@ -237,7 +239,7 @@ impl<T: Real> LoopVisitor<T> for Take<'_> {
     }
 }
 
-/// Fingerprints every loop.
+/// Passes the fingerprint of every loop to `take`.
 pub(crate) fn loops<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
     if each::<T>(&mut Take(take)).is_err() {
         // The hash of no values, which a test looks for.

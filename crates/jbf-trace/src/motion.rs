@@ -1,7 +1,8 @@
 //! Common motion of all fingerprints.
 //!
-//! It consists of two sines with many reversals, contact and full film, a rest, a load that jumps,
-//! and a rising temperature. It uses only sums, products and the sine of `jbf-core`.
+//! The motion consists of two sines with many reversals, contact and full film, a rest, a jump of
+//! the load, and a rising temperature. It is computed with sums, products and the sine of
+//! `jbf-core` only.
 
 use jbf_core::{Bearing, Motion, Real};
 
@@ -10,16 +11,18 @@ pub const STEP_S: f64 = 0.005;
 
 const STEPS: u32 = 600;
 
-/// Amplitude (m/s), frequency (rad/s), phase (rad).
+/// Amplitude (m/s), frequency (rad/s) and phase (rad) of the two sines.
 const WAVES: [[f64; 3]; 2] = [[0.08, 3.0, 0.0], [0.04, 7.1, 1.0]];
 
-/// Range of samples at rest.
+/// Range of samples at which the journal is at rest.
 const REST: core::ops::Range<u32> = 240..280;
 
 /// Sample at which the load jumps, and the loads (N) before and after it.
 const JUMP: (u32, f64, f64) = (400, 104.0, 150.0);
 
-/// Initial temperature, C, and its rate of rise, C/s.
+/// Initial temperature, C.
+///
+/// `RISE_C_S` is its rate of change.
 const FIRST_C: f64 = 28.0;
 const RISE_C_S: f64 = 1.5;
 

@@ -1,38 +1,39 @@
-//! Simulated shaft for a closed loop, and the references of the loop.
+//! Simulated shaft for a control loop, and the excitation of the loop.
 //!
-//! The references are sixteen seconds with all conditions that make a step costly or a result
-//! wrong.
+//! The excitation takes sixteen seconds and contains all conditions that make a step slow or a
+//! result wrong.
 //!
 //! ```text
 //! v' = -a v + b (u - F),   F holds up to a level that jumps with the load
 //! ```
 //!
-//! A step is implicit in F, so that the shaft sticks. It is as small as possible, because a
-//! microcontroller must run it between the steps of the loop that it tests.
+//! A step is implicit in F, so that the shaft sticks. The model is as simple as possible, because a
+//! microcontroller runs it between the steps of the loop under test.
 
 use jbf_core::encoder::THESIS_COUNTS_PER_RAD;
 use jbf_core::plant::Drive;
 use jbf_core::reference::{Reference, Target, Wave};
 use jbf_core::Real;
 
-/// Time step of the loop, s.
+/// Time step of the control loop, s.
 pub const LOOP_STEP_S: f64 = 0.002;
 
 /// Number of steps of the whole excitation.
 pub const LOOP_STEPS: u32 = 8000;
 
-/// Number of steps of one part of the excitation.
+/// Number of steps in one of the eight parts of the excitation.
 const PART: u32 = 1000;
 
-/// Drive of the thesis, with the friction scale to which the friction of these loops was fitted.
+/// Drive of Cohn (1998), with the friction scale for which the friction of these loops was fitted.
 pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.02827);
 /// Counts per radian of the encoder; its counter has 16 bits.
 pub const COUNTS_PER_RAD: f64 = THESIS_COUNTS_PER_RAD;
 
-/// Holding level of friction, V, under the load of the thesis.
+/// Friction level at rest under the nominal load, V.
 const LEVEL_V: f64 = 0.7;
 
-/// Velocity reference of each part, rad/s, and its load relative to the usual load.
+/// Reference of each part: waveform, amplitude (rad/s), frequency (rad/s), and the load relative to
+/// the nominal load.
 const PARTS: [(Wave, f64, f64, f64); 8] = [
     (Wave::Sine, 10.0, 2.0, 1.0),
     (Wave::Triangle, 4.0, 4.0, 1.0),
@@ -48,13 +49,15 @@ const PARTS: [(Wave, f64, f64, f64); 8] = [
     (Wave::Triangle, 8.0, 20.0, 1.0),
 ];
 
-/// Range of steps with a dead encoder, and the step at which its counter jumps.
+/// Range of steps with a frozen encoder.
+///
+/// The counter jumps at step `JUMP`.
 const DEAD: core::ops::Range<u32> = 6200..6500;
 const JUMP: u32 = 6800;
 
-/// Target of the loop at a step, and the friction level, V.
+/// Target of the loop and friction level (V) at a step.
 ///
-/// A position reference is the same wave, a tenth as large.
+/// The reference of position control is the same wave, with a tenth of the amplitude.
 pub fn asked<T: Real>(step: u32, position: bool) -> (Target<T>, T) {
     let part = (step / PART % PARTS.len() as u32) as usize;
     let (wave, size, frequency_rad_s, load) = PARTS[part];
@@ -69,7 +72,7 @@ pub fn asked<T: Real>(step: u32, position: bool) -> (Target<T>, T) {
     (lifted, T::of(LEVEL_V * load))
 }
 
-/// Motor, shaft and encoder.
+/// State of motor, shaft and encoder.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft<T> {
     speed_rad_s: T,
@@ -93,7 +96,7 @@ impl<T: Real> Default for Shaft<T> {
 }
 
 impl<T: Real> Shaft<T> {
-    /// Value of the encoder's counter at a step.
+    /// Returns the value of the encoder counter at a step.
     pub fn counter(&mut self, step: u32) -> u32 {
         if !DEAD.contains(&step) {
             let counts = self.angle_rad * T::of(COUNTS_PER_RAD);
@@ -103,7 +106,7 @@ impl<T: Real> Shaft<T> {
         self.counter
     }
 
-    /// Advances one step under a voltage, against friction of a level, V.
+    /// Advances the shaft by one step under a voltage (V), with friction up to a level (V).
     pub fn push(&mut self, volts: T, level_v: T) {
         let before = self.speed_rad_s;
         let free = self.keep * before + self.gain * volts;

@@ -1,4 +1,4 @@
-//! Fingerprints of every stepper on the films that it is meant for.
+//! Fingerprints (hashes of results) of every integration method with the films that it supports.
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
@@ -8,10 +8,10 @@ use jbf_core::law::Law;
 use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P};
 use jbf_core::{Bearing, Clock, Motion, Real};
 
-/// Hashes the results of `step` along the motion.
+/// Computes the hash of the results of `step` along the common motion.
 ///
-/// Its arguments are the motion, |U| at the start, middle and end of the step, and the length of
-/// the step.
+/// The arguments of `step` are the motion, |U| at the start, middle and end of the step, and the
+/// length of the step.
 fn along<T: Real>(mut step: impl FnMut(&Motion<T>, [T; 3], T) -> [T; 2]) -> Hash {
     let mut hash = Hash::default();
     let mut before = T::ZERO;
@@ -37,7 +37,7 @@ fn parameters<T: Real>() -> Parameters<T> {
     }
 }
 
-/// Fingerprints every stepper.
+/// Passes the fingerprint of every integration method to `take`.
 pub(crate) fn steppers<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
     let bearing = Bearing::THESIS;
     let (Ok(law), Ok(full)) = (

@@ -1,4 +1,4 @@
-//! The fingerprints of this build equal those of the table.
+//! Tests that the fingerprints of this build equal those of the table.
 //!
 //! `make bits` repeats the test for debug, release and native builds.
 
@@ -6,7 +6,7 @@ use jbf_trace::{check, traces, Hash, Trace, TABLE};
 use std::collections::BTreeMap;
 
 #[test]
-fn every_trace_has_the_hash_of_the_table() {
+fn every_fingerprint_equals_that_of_the_table() {
     let mut wrong = Vec::new();
     let mut new = Vec::new();
     let found = check(|trace, expected| match expected {
@@ -28,9 +28,9 @@ fn every_trace_has_the_hash_of_the_table() {
     );
 }
 
-/// Hashes are meaningful: they differ from each other and from that of no data.
+/// Hashes of different computations differ from each other and from that of an empty sequence.
 #[test]
-fn hashes_of_traces_differ_between_effects() {
+fn fingerprints_differ_between_computations() {
     let mut seen: BTreeMap<u64, Vec<Trace>> = BTreeMap::new();
     traces::<f64>("f64", &mut |t| seen.entry(t.hash).or_default().push(*t));
     assert!(!seen.contains_key(&Hash::default().0));
@@ -50,7 +50,7 @@ fn hashes_of_traces_differ_between_effects() {
     }
 }
 
-/// The effect itself, or the first effect of the kind that it repeats.
+/// Name of the effect, or of the effect of which it is a second instance.
 fn first(trace: &Trace) -> &'static str {
     let info = jbf_core::effect::CATALOGUE
         .iter()

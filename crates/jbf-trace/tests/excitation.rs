@@ -1,5 +1,5 @@
-//! The excitation of the loops has its documented properties, so that a time budget over it is a
-//! worst case.
+//! Tests that the excitation of the loops contains all demanding conditions, so that a time budget
+//! with it is a worst case.
 
 use jbf_core::compensator::Compensator;
 use jbf_core::controller::{Controller, Status};

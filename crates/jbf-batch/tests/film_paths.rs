@@ -46,7 +46,7 @@ fn alone(law: &Journal<f64>, steps: &[FilmStep]) -> Vec<f64> {
 }
 
 #[test]
-fn film_path_in_a_batch_has_the_bits_of_its_separate_path() {
+fn film_path_in_a_batch_equals_that_computed_alone_bit_for_bit() {
     // Fewer films than a block, exactly a block, and more; with separate or shared motions.
     for count in [1, 7, 16, 30, 45] {
         let motions: Vec<Vec<FilmStep>> = (0..count)

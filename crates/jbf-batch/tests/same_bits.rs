@@ -112,7 +112,7 @@ fn agree<F: Float>(sets: usize, method: Method, dt_s: f64) -> u32 {
 }
 
 #[test]
-fn batch_has_the_bits_of_single_laws_in_double_precision() {
+fn batch_equals_single_laws_bit_for_bit_in_double_precision() {
     for sets in [1, 31, 32, 75] {
         assert_eq!(agree::<f64>(sets, Method::Euler, 0.002), 0);
         assert_eq!(agree::<f64>(sets, Method::Rk4, 0.002), 0);
@@ -120,7 +120,7 @@ fn batch_has_the_bits_of_single_laws_in_double_precision() {
 }
 
 #[test]
-fn batch_has_the_bits_of_single_laws_in_single_precision() {
+fn batch_equals_single_laws_bit_for_bit_in_single_precision() {
     for sets in [1, 75] {
         agree::<f32>(sets, Method::Euler, 0.002);
         agree::<f32>(sets, Method::Rk4, 0.002);
@@ -129,7 +129,7 @@ fn batch_has_the_bits_of_single_laws_in_single_precision() {
 
 /// The eccentricity of a film that leaves its bearing in a coarse step is limited as in `jbf_core`.
 #[test]
-fn films_are_held_as_in_the_core_if_steps_are_too_coarse() {
+fn eccentricity_is_limited_as_in_the_core_if_steps_are_too_coarse() {
     assert!(agree::<f64>(40, Method::Euler, 0.3) > 0);
     assert!(agree::<f64>(40, Method::Rk4, 0.8) > 0);
     assert!(agree::<f32>(40, Method::Euler, 0.3) > 0);

@@ -1,4 +1,4 @@
-//! Tells the linker where `memory.x` is.
+//! Reports the directory of `memory.x` to the linker.
 
 fn main() {
     println!("cargo:rustc-link-search={}", env!("CARGO_MANIFEST_DIR"));

@@ -1,17 +1,20 @@
-//! The board: encoder, amplifier, tick, and a clock that counts instructions under QEMU. The
-//! addresses are those of Arm's MPS2 with the AN386 image; put your own chip's HAL here.
+//! Board support: encoder, amplifier, timer interrupt, and a clock that counts instructions under
+//! QEMU.
+//!
+//! The addresses are those of Arm's MPS2 with the AN386 image; replace them by the HAL of your
+//! chip.
 
 use core::ptr;
 use cortex_m::peripheral::{syst::SystClkSource, SYST};
 
-/// CMSDK timer 0, 25 MHz: under `-icount shift=6` an instruction takes 64 ns.
+/// Address of the CMSDK timer 0 with 25 MHz; with `-icount shift=6` an instruction takes 64 ns.
 const TIMER: usize = 0x4000_0000;
 const TIMER_VALUE: usize = TIMER + 4;
 const TIMER_RELOAD: usize = TIMER + 8;
 
-/// Stands in for the encoder's counter: CMSDK timer 1.
+/// Address of the CMSDK timer 1, which represents the counter of the encoder.
 const COUNTER: usize = 0x4000_1004;
-/// Stands in for the amplifier's converter: the LEDs of the FPGA.
+/// Address of the LEDs of the FPGA, which represent the converter of the amplifier.
 const AMPLIFIER: usize = 0x4002_8000;
 
 fn read(address: usize) -> u32 {
@@ -24,18 +27,18 @@ fn write(address: usize, value: u32) {
     unsafe { ptr::write_volatile(address as *mut u32, value) }
 }
 
-/// The encoder's counter, 16 bits.
+/// Returns the counter of the encoder, 16 bits.
 pub fn counter() -> u32 {
     read(COUNTER) & 0xffff
 }
 
-/// Give a voltage to the amplifier: 12 bits over +-10 V.
+/// Outputs a voltage to the amplifier: 12 bits over +-10 V.
 pub fn amplify(volts: f32) {
     let counts = (volts * 204.7) as i32 + 2048;
     write(AMPLIFIER, counts as u32);
 }
 
-/// Let SysTick tick every 2 ms of a clock of 168 MHz.
+/// Starts the SysTick interrupt with a period of 2 ms, for a clock of 168 MHz.
 pub fn tick_every_2_ms(syst: &mut SYST) {
     syst.set_clock_source(SystClkSource::Core);
     syst.set_reload(336_000 - 1);
@@ -44,32 +47,32 @@ pub fn tick_every_2_ms(syst: &mut SYST) {
     syst.enable_interrupt();
 }
 
-/// Counts instructions, under QEMU with `-icount shift=6`.
+/// Time of the timer, to count instructions under QEMU with `-icount shift=6`.
 #[derive(Clone, Copy)]
 pub struct Instructions(u32);
 
 impl Instructions {
-    /// Let the timer run; call once.
+    /// Starts the timer; call once.
     pub fn begin() {
         write(TIMER_RELOAD, u32::MAX);
         write(TIMER_VALUE, u32::MAX);
         write(TIMER, 1);
     }
 
-    /// Now.
+    /// Returns the present time.
     #[inline(always)]
     pub fn now() -> Self {
         Self(read(TIMER_VALUE))
     }
 
-    /// Ticks of the timer since, 40 ns each.
+    /// Returns the number of ticks of the timer (40 ns each) since this time.
     #[inline(always)]
     pub fn ticks(self) -> u32 {
         self.0.wrapping_sub(read(TIMER_VALUE))
     }
 }
 
-/// Instructions of a number of ticks: 64 ns each.
+/// Converts ticks of the timer (40 ns) to instructions (64 ns).
 pub fn instructions(ticks: u32) -> u32 {
     ticks * 40 / 64
 }

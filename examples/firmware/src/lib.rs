@@ -1,4 +1,4 @@
-//! Parts that the programs share: the board and the panic handler.
+//! Code that the programs share: the board support and the panic handler.
 #![no_std]
 
 pub mod board;
@@ -7,7 +7,7 @@ pub mod plain;
 
 use core::panic::PanicInfo;
 
-/// `control` cannot get here (a test reads its ELF); the reports can.
+/// Stops after a panic; `control` never reaches this function (a test checks its symbols).
 #[panic_handler]
 fn panic(_info: &PanicInfo) -> ! {
     cortex_m_semihosting::debug::exit(cortex_m_semihosting::debug::EXIT_FAILURE);

@@ -1,4 +1,4 @@
-//! Cost of a step: instructions and stack, over many steps.
+//! Measures the cost of a step: instructions and stack, over many steps.
 
 use crate::board::{instructions, Instructions};
 use core::hint::black_box;
@@ -6,17 +6,18 @@ use core::ptr;
 use cortex_m::register::msp;
 use cortex_m_semihosting::hprintln;
 
-/// Most steps of one measurement.
+/// Largest number of steps of one measurement.
 const MOST: usize = 8000;
 
-/// Bytes below the stack pointer that are watched.
+/// Number of bytes below the stack pointer in which the use of the stack is detected.
 const WATCHED: usize = 4096;
 const PAINT: u32 = 0x5a5a_a5a5;
 
-/// Ticks of each step.
+/// Ticks of the timer that each step took.
 static mut TICKS: [u32; MOST] = [0; MOST];
 
-/// Paint the stack below this frame, call, and see how deep it went: bytes.
+/// Measures the stack that a call uses, bytes: fills it with a pattern before, and counts the
+/// changed bytes after.
 #[inline(never)]
 fn depth(call: &mut dyn FnMut()) -> usize {
     let top = msp::read() as usize & !3;
@@ -37,7 +38,7 @@ fn depth(call: &mut dyn FnMut()) -> usize {
     0
 }
 
-/// Ticks of `work`.
+/// Measures the time of `work`, ticks of the timer.
 #[inline(never)]
 fn timed(work: &mut dyn FnMut()) -> u32 {
     let begin = Instructions::now();
@@ -45,7 +46,8 @@ fn timed(work: &mut dyn FnMut()) -> u32 {
     begin.ticks()
 }
 
-/// Measure `steps` steps: `prepare` makes a step's input and is not counted, `work` is.
+/// Measures `steps` steps and reports the cost; `work` is measured, and `prepare`, which returns
+/// its input, is not.
 pub fn measure<I>(
     name: &str,
     ram: usize,

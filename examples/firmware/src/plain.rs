@@ -1,5 +1,7 @@
-//! The reduced model as one would type it in from the thesis: polar coordinates, the film integrals as
-//! printed, `libm`. For comparison only.
+//! Direct implementation of the journal law without inertia from the equations of Cohn (1998), for
+//! comparison only.
+//!
+//! It uses polar coordinates, the film integrals as printed, and `libm`.
 
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Clock, ParameterError};
@@ -18,7 +20,7 @@ pub struct Plain {
 }
 
 impl Plain {
-    /// Table 4.2 at 104 N.
+    /// Creates the model with the parameters of Table 4.2 at 104 N.
     ///
     /// # Errors
     /// None: the numbers are valid.
@@ -41,7 +43,7 @@ impl Plain {
         })
     }
 
-    /// An Euler step, and the friction coefficient before it.
+    /// Advances by an Euler step, and returns the friction coefficient before the step.
     pub fn step(&mut self, velocity_m_s: f32, dt: f32) -> f32 {
         let (e, phi, fb) = (self.eps, self.phi, self.load_number);
         let ub = libm::fabsf(velocity_m_s) / self.p.u_tr_m_s;

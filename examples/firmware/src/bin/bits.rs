@@ -1,4 +1,4 @@
-//! Every fingerprint of `jbf-trace`, computed here and compared with the table that laptops have.
+//! Computes every fingerprint of `jbf-trace` on this target and compares it with the common table.
 
 #![no_std]
 #![no_main]

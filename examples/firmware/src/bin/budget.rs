@@ -1,4 +1,5 @@
-//! Cost of every observer, model and loop on this target; `make firmware` makes a table of it.
+//! Measures the cost of every observer, model and loop on this target; `make firmware` prints a
+//! table of it.
 
 #![no_std]
 #![no_main]
@@ -25,7 +26,7 @@ use jbf_trace::{asked, Shaft, LOOP_STEPS, LOOP_STEP_S};
 const PERIOD: u32 = 3141;
 const SHORT: u32 = 800;
 
-/// Two-way motion of chapter 4.
+/// Motion in both directions of chapter 4 of Cohn (1998), at a step.
 fn two_way<T: Real>(step: u32, omega_rad_s: f64) -> Motion<T> {
     let time_s = LOOP_STEP_S * f64::from(step);
     let (sin, cos) = (
@@ -45,7 +46,7 @@ fn ends<T: Real>(step: u32, omega_rad_s: f64) -> (Motion<T>, Motion<T>) {
     (two_way(step, omega_rad_s), two_way(step + 1, omega_rad_s))
 }
 
-/// |U| at the start, middle and end of a step.
+/// Absolute surface speeds |U| at the start, middle and end of a step, m/s.
 fn speeds<T: Real>(from: &Motion<T>, to: &Motion<T>) -> [T; 3] {
     let (a, b) = (from.velocity_m_s, to.velocity_m_s);
     [a, (a + b) * T::of(0.5), b].map(T::abs)
@@ -145,7 +146,7 @@ struct Bare(&'static str);
 impl Visitor<f32> for Bare {
     type Output = ();
 
-    /// A law by itself: film or memory, friction, bristle.
+    /// Measures a law without effects: its state (film or frictional memory), friction and bristle.
     fn visit<L: Named<f32>>(self, law: L) {
         let law = black_box(law);
         let mut state = law.start(104.0);
@@ -222,7 +223,8 @@ impl LoopVisitor<f32> for Looped {
     }
 }
 
-/// The full model in single precision against double, as a share of the loop's peak.
+/// Reports the difference of the model with inertia between single and double precision, relative
+/// to the peak of the loop.
 fn precision() -> Result<(), ParameterError> {
     let bearing = Bearing::THESIS;
     let single = JournalFull::<f32>::new(&bearing, 104.0, &table_4_2(), Clock::Journal)?;

@@ -1,5 +1,7 @@
-//! The loop as it flies: every 2 ms the encoder's counter in, the voltage out. No report, no panic,
-//! no allocation; `make firmware` reads its size and its symbols.
+//! Control loop for a product: every 2 ms, it reads the counter of the encoder and outputs a
+//! voltage.
+//!
+//! The program does not report, panic or allocate; `make firmware` checks its size and its symbols.
 
 #![no_std]
 #![no_main]
@@ -13,7 +15,7 @@ use jbf_core::ParameterError;
 use jbf_firmware::board;
 use jbf_trace::loops;
 
-/// The compensator of choice.
+/// Creates the control loop with the selected compensator.
 fn chosen() -> Result<Controller<f32, impl Compensator<f32>>, ParameterError> {
     #[cfg(feature = "none")]
     let compensator = jbf_core::compensator::NoCompensation;

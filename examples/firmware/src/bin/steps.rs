@@ -1,5 +1,8 @@
-//! Every law, stepper, effect and loop, single and double precision, and nothing else: a program whose
-//! symbols show that no step can panic. `bits` compares its results.
+//! Steps every law, integration method, effect and loop in single and double precision, and does
+//! nothing else.
+//!
+//! The symbols of this program show that no step can panic. The program `bits` compares the
+//! results.
 
 #![no_std]
 #![no_main]

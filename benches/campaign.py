@@ -1,8 +1,8 @@
-"""One campaign, predicted with its derivatives and fitted: `python benches/campaign.py`.
+"""Time to predict, differentiate and fit one simulated campaign: `python benches/campaign.py`.
 
-Six runs (390 s, 50 samples/s) of the project's own simulator with two effects. Times are wall-clock
-times measured in Python. `CPU` is the processor time of all threads together, which a busy machine
-affects less; on two free cores the wall-clock time is about half of it.
+The campaign has six runs (390 s, 50 samples/s) of `simulator/rigsim` with two effects. Times are
+wall-clock times measured in Python. `CPU` is the processor time of all threads together, which a
+busy machine affects less; on two free cores the wall-clock time is about half of it.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def campaign(seed: int) -> tuple[jbf.Rig, list[jbf.Run]]:
 
 
 def timed(work: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Median and least wall-clock time, and least processor time, in milliseconds."""
+    """Return median and shortest wall-clock time and shortest processor time of `work`, ms."""
     wall, cpu = [], []
     for _ in range(rounds):
         begin, begun = time.perf_counter(), time.process_time()
@@ -53,13 +53,13 @@ def timed(work: Callable[[], object], rounds: int) -> tuple[float, float, float]
 
 
 def row(name: str, times: tuple[float, float, float], share: int | None = None) -> None:
-    """Print a table row; `share` is the number of parameters that divides the CPU time."""
+    """Print a table row of times, and the processor time divided by `share` parameters."""
     each = "" if share is None else f"{times[2] / share:.2f}"
     print(f"| {name} | {times[0]:.1f} | {times[1]:.1f} | {times[2]:.1f} | {each} |")
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure the campaign and print a table of times."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--seed", type=int, default=3)

@@ -1,9 +1,10 @@
-"""Processor time of `jbf.control.run` for 100 s of loop at 2 ms (50,000 steps), plant and log too.
+"""Processor time of `jbf.control.run` for 100 s of a loop at 2 ms (50,000 steps).
 
-`python benches/control_runs.py` prints the median and the least of several runs for each scheme.
-The task is the velocity sine of Table 6.2. The bench is the thesis's with its elastic belt, or
-without it (`rigid`). `all effects` has every effect of the catalogue that needs no thermometer, at
-its starting values.
+`python benches/control_runs.py` prints the median and the shortest of several runs for each scheme.
+The times include the simulated shaft and the log. The task is the sine in velocity control of Table
+6.2 in Cohn (1998). The simulated rig is the one described there, with its elastic belt or without
+it (`rigid`). `all effects` has every effect of the catalogue that needs no thermometer, at its
+starting values.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def burdened() -> Model:
 
 
 def main() -> None:
-    """Print one row per scheme, for three benches."""
+    """Print one row of times per scheme, for three simulated rigs."""
     argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0]).parse_args()
     benches = {
         "elastic belt": control.thesis_model(),

@@ -1,11 +1,11 @@
-"""Instructions of every step, counted by callgrind and compared with `benches/counts.txt`.
+"""Instructions of every kind of step, counted by callgrind and compared with `benches/counts.txt`.
 
 `make counts` fails if a step takes over 5 % more instructions than in the baseline. `python
 benches/counts.py --write` rewrites the baseline, as part of a change that justifies it.
 
-Counts do not depend on the load of the machine, but on the compiler. With another rustc than the
-baseline's, the commit that wrote the baseline is built with this rustc and measured instead. If git
-does not have that commit, counts are compared with a limit of 20 %.
+Counts do not depend on the load of the machine, but on the compiler. If the rustc differs from that
+of the baseline, the commit that wrote the baseline is built with the present rustc and measured
+again. If git does not have this commit, the limit is 20 %.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def rustc() -> str:
 
 
 def measured(root: Path, target: Path) -> Counts:
-    """Build `root` into `target` and count the instructions per step, by name."""
+    """Build the source tree `root` into `target` and count the instructions per step, by name."""
     # Flags set by the user would produce other code than the baseline's.
     environment = {
         k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS")
@@ -105,7 +105,7 @@ def by_this_compiler(target: Path) -> Counts | None:
 
 
 def baseline(target: Path) -> tuple[Counts, float]:
-    """Return the counts to compare with, and the limit."""
+    """Return the instruction counts of the baseline, and the permitted relative increase."""
     compiler, counts = read()
     if compiler == rustc().strip():
         return counts, LIMIT

@@ -1,9 +1,9 @@
 """Rate of right diagnoses of simulated drives: `python benches/drives.py --seeds 4`.
 
-Dry and viscous friction under three loads (`rigsim.axes`, which shares no code with the library).
-The campaigns contain no effect, one effect of drives, two effects, an effect that is in no
-catalogue, or a varying temperature with a thermometer. Six runs are diagnosed and two more of the
-same drive are predicted.
+The simulated drives have dry and viscous friction under three loads (`rigsim.axes`, which shares no
+code with the library). The campaigns contain no effect, one effect of drives, two effects, an
+effect that is in no catalogue, or a varying temperature with a thermometer. Six runs are diagnosed
+and two more of the same drive are predicted.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ COMPANY = {
     "cogging_2": ("cogging",),
     "pitch_ripple_2": ("pitch_ripple",),
 }
-"""Effects that must be present for another effect to be observable."""
+"""Further effects without which an effect cannot be observed, with their parameters."""
 SWING = 8.0
-"""Factor by which the motion of a joint that carries its weight is wider than that of a slide."""
+"""Ratio of the range of motion of a joint that carries its weight to that of a slide."""
 WARM: tuple[tuple[tuple[str, ...], Kind], ...] = (
     ((), "wandering"),
     ((), "warming"),
@@ -45,7 +45,7 @@ WARM: tuple[tuple[tuple[str, ...], Kind], ...] = (
 )
 """Hidden effects and course of the temperature in campaigns with a thermometer."""
 PULLEY_M = 0.05
-"""Radius of the rotating part of a drive, for foreign effects that require an angle."""
+"""Radius of the rotating part of a drive, m, for foreign effects that require an angle."""
 FITTED, PREDICTED = 6, 2
 NONE_A_ROUND, PAIRS_A_ROUND = 6, 8
 
@@ -63,7 +63,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Answer:
-    """The result of a diagnosis and its assessment."""
+    """Result of the diagnosis of a campaign, with its assessment."""
 
     task: Task
     judged: str
@@ -74,7 +74,7 @@ class Answer:
 
 
 def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
-    """Generate the campaigns of several rounds; no two share a seed."""
+    """Generate the campaigns of several rounds, each with a different seed."""
     cold = [name for name in AXIS_EFFECTS if name not in OF_TEMPERATURE]
     singles = [tuple(sorted({name, *COMPANY.get(name, ())})) for name in cold]
     together = [
@@ -97,7 +97,7 @@ def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
 
 
 def recorded(run: AxisRun, joint: bool) -> jbf.Run:
-    """Convert a run for the library: a joint has an angle, a slide a position."""
+    """Convert a simulated run to a `jbf.Run`: a joint has an angle, a slide a position."""
     path = {"angle_rad" if joint else "position_m": run.path}
     made = jbf.Run.from_arrays(
         run.time_s,
@@ -112,12 +112,12 @@ def recorded(run: AxisRun, joint: bool) -> jbf.Run:
 
 
 def rig_of(joint: bool) -> jbf.Rig:
-    """The rig of a joint or slide whose torque or force was measured."""
+    """Return the rig of a joint (torque) or of a slide (force)."""
     return jbf.Rig(drive=jbf.Drive("rotary", "torque") if joint else jbf.Drive("linear", "force"))
 
 
 def simulated(task: Task) -> tuple[jbf.Rig, list[jbf.Run], float]:
-    """Return the rig, its runs, and the noise level, N or N m."""
+    """Simulate a campaign; return the rig, its runs, and the noise level, N or N m."""
     joint = "gravity" in task.effects or task.seed % 2 == 0
     swing = SWING if "torque_proportional" in task.effects else 1.0
     records, truth = axis_campaign(
@@ -153,7 +153,7 @@ def answer(task: Task) -> Answer:
 
 
 def judged(task: Task, diagnosis: jbf.Diagnosis) -> str:
-    """Assess a diagnosis.
+    """Assess a diagnosis against the hidden effects of its campaign.
 
     The result is one of the outcomes in the columns of `table`.
     """
@@ -171,7 +171,7 @@ def judged(task: Task, diagnosis: jbf.Diagnosis) -> str:
 
 
 def table(answers: list[Answer]) -> Iterator[str]:
-    """Generate a row per kind, and a line for every campaign that is not right."""
+    """Generate a table by kind of campaign, and a line for each campaign that is not right."""
     columns = ("right", "tied", "named falsely", "unexplained", "missed", "not reported")
     head = ("hidden", "campaigns", *columns, "held-out, median", "worst", "CPU s, worst")
     yield f"| {' | '.join(head)} |"

@@ -1,7 +1,8 @@
 """Memory of a process during many diagnoses: `python benches/endurance.py`.
 
-Diagnoses campaign after campaign in one process and prints its resident memory. Fails if the memory
-after the last tenth exceeds that after the second by more than `--growth-mib`.
+The program diagnoses one campaign after another in one process and prints its resident memory. It
+fails if the memory after the last tenth of the campaigns exceeds that after the second tenth by
+more than `--growth-mib`.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 
 
 def resident_mib() -> float:
-    """Resident memory of the process, MiB."""
+    """Return the resident memory of this process, MiB."""
     status = Path("/proc/self/statm")
     if status.exists():
         return int(status.read_text().split()[1]) * resource.getpagesize() / 2**20
@@ -25,7 +26,7 @@ def resident_mib() -> float:
 
 
 def campaign(seed: int, samples: int) -> list[jbf.Run]:
-    """Two runs of an axis with dry friction; every other campaign has a zero offset."""
+    """Simulate two runs of an axis with dry friction, with a zero offset for odd seeds."""
     random = np.random.default_rng(seed)
     runs = []
     for name, rate in (("slow", 0.7), ("fast", 2.9)):

@@ -61,10 +61,10 @@ UNITS: dict[str, tuple[float, str]] = {
     "kg m²": (1.0, "kg m^2"), "kg cm^2": (1e-4, "kg m^2"), "Pa s": (1.0, "kg m^-1 s^-1"),
     "mPa s": (1e-3, "kg m^-1 s^-1"), "mPa·s": (1e-3, "kg m^-1 s^-1"), "cP": (1e-3, "kg m^-1 s^-1"),
 }  # fmt: skip
-"""Text of a unit, its size in SI and its dimensions; a revolution is an angle of 2 pi."""
+"""Texts of units, with their sizes in SI units and dimensions; a revolution is an angle of 2 pi."""
 
 TWO_MEANINGS = ("lb", "kg", "g", "t", "grad", "1/s", "s-1", "s^-1", "Hz", "oz")
-"""A force or a mass; degrees or gon; turns or radians in one second."""
+"""Texts of units with two meanings: force or mass, degrees or gon, turns or radians per second."""
 
 PINT_DEFINITIONS = """
 rad = [angle] = _ = radian
@@ -82,7 +82,7 @@ kilopond = 9.80665 * newton = kp
 thousandth_inch = 0.001 * inch = mil
 percent_ = 0.01 = pct
 """.strip().splitlines()
-"""Units that pint's registry lacks or defines with another meaning."""
+"""Definitions of units that the registry of pint lacks or defines with another meaning."""
 PINT_REWRITES = (
     (r"^(1?/min|min-1|min\^-1|min⁻¹)$", "rpm"),
     (r"(?<=[A-Za-z])-(?=[A-Za-z])", "*"),
@@ -93,7 +93,7 @@ PINT_REWRITES = (
     (r"^C(elsius)?$", "degC"),
     (r"\b(lb|oz)(?=\*(ft|in))|(?<=(in|ft)\*)(lb|oz)\b", r"\1\4f"),
 )
-"""Spellings that pint's parser does not accept, as regular expressions."""
+"""Regular expressions that replace spellings which the parser of pint does not accept."""
 
 
 def _ns(*parts: int, ns: int = 0, minutes_east: int = 0) -> int:
@@ -143,13 +143,13 @@ DATES: dict[str, int] = {
     "1:05:07 PM": _ns(1970, 1, 1, 13, 5, 7),
     "13:05": _ns(1970, 1, 1, 13, 5),
 }
-"""Date and time texts, and their nanoseconds since 1970 or since midnight."""
+"""Texts of dates and times, with their nanoseconds since 1970 or since midnight."""
 
 NO_DATES = (
     "2026-02-30", "31.04.2026 10:00", "2026-13-01", "12:00:00 XM", "noon", "10", "1.2", "3.5 N",
     "2026-11-24 13:05:07 CET",
 )  # fmt: skip
-"""Cells that are not dates, or have an unknown time zone: they must be refused."""
+"""Texts that are not dates, or have an unknown time zone, and must be refused."""
 
 ORDERS: tuple[tuple[list[str], str | None], ...] = (
     (["03/04/2026", "04/04/2026"], None),
@@ -158,17 +158,18 @@ ORDERS: tuple[tuple[list[str], str | None], ...] = (
     (["02/13/2026", "02/01/2026"], "month_first"),
     (["03.04.2026", "04.04.2026"], "day_first"),
 )
-"""Columns, and whether day or month comes first; None if a person must decide."""
+"""Columns of dates, and whether day or month comes first; None if the column does not determine it.
+"""
 
 
 @dataclass(frozen=True)
 class Text:
-    """A file and its expected interpretation.
+    """Text file with its expected interpretation.
 
     Attributes
     ----------
     header
-        The row of the names, the first being 1; 0 without such a row.
+        Number of the row with the column names, counted from 1; 0 if there is none.
     """
 
     data: bytes
@@ -202,7 +203,7 @@ def text(
     groups: bool = False,
     blank: str = "",
 ) -> Text:
-    """Create a file with sixty rows of samples."""
+    """Create a text file with sixty rows of samples in the given dialect."""
     mark = delimiter + blank
     names = names[:columns]
 
@@ -243,7 +244,7 @@ _LONG = ("Logger: ACME 3000, v1.2", "Kanal;Faktor;Offset", "1;1,000;0,0", "2;0,2
 
 
 def texts() -> dict[str, Text]:
-    """Return files by their special property."""
+    """Return the text files, with their special property as key."""
     date = "24.11.2026 13:05:{second:02d},{tenth}00"
     marks = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
     cases = {f"{word}, decimal point": text(mark) for word, mark in marks.items()}

@@ -38,11 +38,11 @@ from import_cases import (
 )  # fmt: skip
 
 Outcome = str | None
-"""Text of a wrong reading; empty if it is right, None if it is refused."""
+"""Result of a parser: an empty text if it is right, the wrong value as text, None if it refuses."""
 
 
 def library(name: str) -> Any:
-    """Return a module; None, with a message, if it is not installed."""
+    """Import a module and return it; return None and print a message if it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -60,7 +60,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
 
 
 def counted(outcomes: Mapping[str, Outcome]) -> list[object]:
-    """Numbers of right, refused and wrong readings, and the wrong readings."""
+    """Return the numbers of right, refused and wrong results, and the wrong results."""
     wrong = {text: shown for text, shown in outcomes.items() if shown}
     refused = [f"`{text}`" for text, shown in outcomes.items() if shown is None]
     listed = "; ".join(f"`{text}`: {shown}" for text, shown in wrong.items())
@@ -75,7 +75,7 @@ def seconds(work: Callable[[], object]) -> float:
 
 
 def import_seconds(code: str, times: int = 5) -> float:
-    """Median time of a new process that runs the code, minus that of one that imports numpy."""
+    """Return the median time of a new process that runs the code, without numpy's import, s."""
 
     def took(line: str) -> float:
         return seconds(lambda: subprocess.run([sys.executable, "-c", line], check=True))
@@ -118,7 +118,10 @@ def pint_unit(registry: Any, text: str) -> tuple[float, dict[str, int]] | None:
 
 
 def unit_outcome(reading: tuple[float, dict[str, int]] | None, wanted: str, size: float) -> Outcome:
-    """Assess a unit: angles and counts may be dimensionless; degrees read as radians are wrong."""
+    """Assess the parsed size and dimensions of a unit.
+
+    Angles and counts may be dimensionless; degrees that are parsed as radians are wrong.
+    """
     if reading is None:
         return None
     expected = {b: int(p or 1) for b, _, p in (f.partition("^") for f in wanted.split())}
@@ -131,7 +134,7 @@ def unit_outcome(reading: tuple[float, dict[str, int]] | None, wanted: str, size
 
 
 def compare_units() -> None:
-    """Compare readings, import time and rounding."""
+    """Compare the unit parsers of several libraries: results, import time and rounding."""
     from jbf.units.table import ASK
     from jbf.units.unit import parse_unit
 
@@ -208,7 +211,7 @@ def date_outcome(read: Callable[[str], Any], cell: str, wanted: int | None) -> O
 
 
 def compare_dates(stamps: int) -> None:
-    """Compare readings of single stamps, the order of day and month of columns, and speed."""
+    """Compare the date parsers of several libraries: single dates, day and month, speed."""
     from jbf.importing.formats.dates import Instants, day_or_month_first
     from jbf.importing.formats.table import BLOCK
 
@@ -258,18 +261,18 @@ def compare_dates(stamps: int) -> None:
 
 
 Detected = tuple[str, str | None, bool]
-"""Delimiter, decimal mark, and whether the row of the names was found."""
+"""Detected delimiter and decimal mark, and whether the row of the names was found."""
 
 
 def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
-    """Return the detection function of each library; input is decoded for those that take text."""
+    """Return the function of each library that detects the dialect of a text file."""
     from jbf.importing.formats.csv_text import TextSource
     from jbf.importing.formats.table import Options
 
     clevercsv, duckdb = library("clevercsv"), library("duckdb")
 
     def header_found(answer: bool, text: Text) -> bool:
-        """Whether a boolean result about the first row is right and sufficient."""
+        """Return True if the detected presence of a header is right and locates the row of names."""
         return text.header < 2 and answer == (text.header == 1)
 
     def jbf_detector(path: Path, text: Text) -> Detected:
@@ -302,7 +305,7 @@ def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
 
 
 def compare_texts(megabytes: float) -> None:
-    """Compare delimiter, decimal mark and names of generated files, and speed."""
+    """Compare the dialect detection of several libraries on generated files, and its speed."""
     cases = texts()
     with tempfile.TemporaryDirectory() as folder:
         paths = {name: Path(folder) / f"{i}.csv" for i, name in enumerate(cases)}
@@ -331,7 +334,7 @@ def compare_texts(megabytes: float) -> None:
 
 
 def compare_speed(folder: Path, megabytes: float) -> None:
-    """Time the detection of the dialect and the reading of the body of one file, in turns."""
+    """Compare the times to detect the dialect of one file and to read its samples, in turn."""
     from jbf.importing.formats.csv_text import TextSource
     from jbf.importing.formats.table import Options
 
@@ -377,7 +380,7 @@ def compare_speed(folder: Path, megabytes: float) -> None:
 
 
 def main() -> None:
-    """Run the comparisons and print their tables."""
+    """Run all comparisons and print their tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", choices=["units", "dates", "texts"], help="one of the tables")
     parser.add_argument("--stamps", type=int, default=1_000_000)

@@ -27,12 +27,12 @@ SLOWEST_M_S = 5e-4
 
 
 def jbf(*words: str | Path) -> None:
-    """Run one command; raise if it fails."""
+    """Run a `jbf` command in a new process; raise if it fails."""
     subprocess.run([sys.executable, "-m", "jbf", *map(str, words)], check=True, capture_output=True)
 
 
 def held_out_rms(model: Path, folder: Path, work: Path) -> float:
-    """RMS of record minus `jbf predict` over the runs of a folder, N."""
+    """Return the RMS of record minus `jbf predict` over the runs of a folder, N."""
     total, count = 0.0, 0
     paths = sorted(folder.glob("*.csv"))
     if not paths:
@@ -49,7 +49,7 @@ def held_out_rms(model: Path, folder: Path, work: Path) -> float:
 
 
 def judge(truth: dict[str, Any], diagnosis: dict[str, Any]) -> str:
-    """Assess a diagnosis: `right`, `tied`, `wrong` or `abstained`, against what can be known."""
+    """Assess the effects that a diagnosis names as `right`, `tied`, `wrong` or `abstained`."""
     hidden = {current_effect(name) for name in truth["effects"]}
     named = set(diagnosis["effects"])
     if truth["foreign"] or hidden - set(catalogue()):
@@ -64,7 +64,7 @@ def judge(truth: dict[str, Any], diagnosis: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Print a row per campaign and the totals."""
+    """Diagnose the campaigns and print a row for each, and the totals."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("cases", type=Path)
     parser.add_argument("heldout", type=Path)

@@ -27,12 +27,12 @@ F_C_N, F_V_N_S_M, NOISE_N = 5.0, 30.0, 0.2
 
 
 def white(random: Random, force: Array, _run: int) -> Array:
-    """Gaussian, independent noise."""
+    """Return the force with Gaussian, independent noise."""
     return NOISE_N * random.standard_normal(len(force))
 
 
 def coloured(random: Random, force: Array, _run: int) -> Array:
-    """Noise with half of its variance correlated over 0.2 s."""
+    """Return the force with noise whose variance is half white, half correlated over 0.2 s."""
     keep = float(np.exp(-STEP_S / 0.2))
     drive = np.sqrt(1.0 - keep**2) * random.standard_normal(len(force))
     slow: Array = signal.lfilter([1.0], [1.0, -keep], drive)
@@ -40,17 +40,20 @@ def coloured(random: Random, force: Array, _run: int) -> Array:
 
 
 def heavy(random: Random, force: Array, _run: int) -> Array:
-    """Noise from Student's t distribution with three degrees of freedom."""
+    """Return the force with noise from Student's t distribution with three degrees of freedom."""
     return NOISE_N / np.sqrt(3.0) * random.standard_t(3.0, len(force))
 
 
 def with_force(random: Random, force: Array, _run: int) -> Array:
-    """Noise with a constant part (a fifth of the usual) and a part of 4 % of the force."""
+    """Return the force with noise that is constant in part, and in part 4 % of the force.
+
+    The constant part is a fifth of the usual noise.
+    """
     return (0.2 * NOISE_N + 0.04 * np.abs(force)) * random.standard_normal(len(force))
 
 
 def by_run(random: Random, force: Array, run: int) -> Array:
-    """Noise from half to twice the usual size, increasing from run to run."""
+    """Return the force with noise from half to twice the usual size, increasing from run to run."""
     return NOISE_N * 2.0 ** (2.0 * run / (RUNS - 1) - 1.0) * random.standard_normal(len(force))
 
 
@@ -64,7 +67,7 @@ KINDS: dict[str, Callable[[Random, Array, int], Array]] = {
 
 
 def campaign(kind: str, seed: int) -> list[jbf.Run]:
-    """Simulate six runs with sines and triangles of different amplitudes and periods."""
+    """Simulate six runs with one kind of noise: sines and triangles of different sizes."""
     random = np.random.default_rng([seed, list(KINDS).index(kind)])
     time = STEP_S * np.arange(round(LASTS_S / STEP_S))
     runs = []
@@ -80,13 +83,13 @@ def campaign(kind: str, seed: int) -> list[jbf.Run]:
 
 
 def answer(kind: str, seed: int) -> tuple[str, tuple[str, ...]]:
-    """Return verdict and names for one campaign."""
+    """Diagnose one simulated campaign; return the verdict and the named effects."""
     diagnosis = jbf.diagnose(jbf.Rig(), campaign(kind, seed), law="coulomb")
     return diagnosis.verdict, diagnosis.effects
 
 
 def main() -> None:
-    """Print a row per kind of noise."""
+    """Diagnose all campaigns and print a row per kind of noise."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--campaigns", type=int, default=40, help="of each kind; 40")
     parser.add_argument("--first-seed", type=int, default=1)

@@ -2,9 +2,9 @@
 
     .venv/bin/python benches/logger_artefacts.py
 
-Takes the demo campaign without hidden effects (five runs at 50 Hz), treats its force channel as
-loggers and exports do, imports the result as a file, and diagnoses it. Only the recording changes,
-so every row should be `adequate` or report the recording artefact.
+The program takes the demo campaign without hidden effects (five runs at 50 Hz) and changes its
+force channel as loggers and exports do. It imports the result as a file, and diagnoses it. Only the
+recording changes, so every row should be `adequate` or report the recording artefact.
 """
 
 from __future__ import annotations
@@ -24,12 +24,15 @@ Columns = dict[str, Array]
 
 
 def as_recorded(run: Columns) -> str:
-    """Return the unchanged record as CSV."""
+    """Return a run as CSV without changes."""
     return table(run)
 
 
 def late(seconds: float) -> Callable[[Columns], str]:
-    """Return a function that delays the force and interpolates it to the stamps of the record."""
+    """Return a function that returns a run as CSV with a delayed force.
+
+    The force is interpolated to the time stamps of the run.
+    """
 
     def treat(run: Columns) -> str:
         time = run["time_s"]
@@ -39,20 +42,20 @@ def late(seconds: float) -> Callable[[Columns], str]:
 
 
 def drawn(run: Columns) -> str:
-    """Return the record as CSV with a force logged at 20 Hz and interpolated linearly."""
+    """Return a run as CSV with a force that is logged at 20 Hz and interpolated linearly."""
     time, force = slow(run)
     return table(run | {"friction_n": np.interp(run["time_s"], time, force)})
 
 
 def held(run: Columns) -> str:
-    """Return the record as CSV with a force logged at 20 Hz, each value held until the next."""
+    """Return a run as CSV with a force that is logged at 20 Hz and held between its samples."""
     time, force = slow(run)
     last = np.searchsorted(time, run["time_s"] + 1e-9, side="right") - 1
     return table(run | {"friction_n": force[last]})
 
 
 def own_clock(run: Columns) -> str:
-    """Return the record as CSV with a force logged at 20 Hz with separate stamps.
+    """Return a run as CSV with a force that is logged at 20 Hz with its own time stamps.
 
     Missing values are empty cells.
     """
@@ -70,14 +73,14 @@ def own_clock(run: Columns) -> str:
 
 
 def slow(run: Columns) -> tuple[Array, Array]:
-    """Return stamps (s) and force (N) at 20 Hz: the sample nearest to each instant."""
+    """Return time stamps at 20 Hz (s), and at each the force (N) of the nearest sample."""
     time = np.arange(run["time_s"][0], run["time_s"][-1], 0.05)
     nearest = np.abs(run["time_s"][:, None] - time).argmin(axis=0)
     return run["time_s"][nearest], run["friction_n"][nearest]
 
 
 def table(run: Columns) -> str:
-    """Format the columns as CSV."""
+    """Format the columns of a run as CSV."""
     rows = zip(*run.values(), strict=True)
     return "\n".join([",".join(run), *(",".join(f"{x:.9g}" for x in row) for row in rows)])
 
@@ -123,7 +126,7 @@ def main() -> None:
 
 
 def read(path: Path) -> Columns:
-    """Read the columns of a run."""
+    """Read the columns of a run from a CSV file."""
     rows = np.genfromtxt(path, delimiter=",", names=True)
     return {name: rows[name] for name in rows.dtype.names}
 

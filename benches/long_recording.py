@@ -1,9 +1,9 @@
 """Time and memory of a diagnosis of a long recording: `python benches/long_recording.py`.
 
-A simulated slide (`rigsim.axes`, which shares no code with the library) records at 50 Hz, divided
-into runs of about five minutes, with one hidden effect or none. Prints the verdict, the names, wall
-and processor time, the largest memory of the process, and the ratio of error to noise on another
-run.
+The recording is that of a simulated slide (`rigsim.axes`, which shares no code with the library) at
+50 Hz, with one hidden effect or none, divided into runs of about five minutes. The program prints
+the verdict, the named effects, the wall-clock and processor time, the largest memory of the
+process, and the ratio of held-out RMS to noise.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ GIB_IN_KIB = 1024.0**2
 
 
 def main() -> int:
-    """Simulate, diagnose and report; fail if the names differ from the hidden effects."""
+    """Simulate and diagnose a recording; fail if the names differ from the hidden effects."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split(":")[0])
     parser.add_argument("--hours", type=float, default=24.0)
     parser.add_argument("--effect", default="inertia", help="what is hidden, or none")

@@ -1,6 +1,6 @@
-"""Compare jbf with the best peers in one run: `python benches/peers.py FOLDER`.
+"""Compare the speed of jbf with that of the best peers: `python benches/peers.py FOLDER`.
 
-FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1, numbalsoda
+FOLDER contains the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1, numbalsoda
 (`solvers.py`, `common.py`) for T2 and T3, `t4.py` for T4. They are not distributed with jbf.
 Without FOLDER, a compiler or a package, the task is skipped with a message. The folder is copied to
 `target/peers` and built there.
@@ -64,7 +64,7 @@ def table(title: str, unit: str, peer: str, rounds: int, rows: Timed) -> None:
 
 
 def clock(work: Callable[[], object], per: float) -> Callable[[], float]:
-    """Return a function that gives the seconds that `work` takes, multiplied by `per`."""
+    """Return a function that runs `work` and returns its time (s) multiplied by `per`."""
 
     def timed() -> float:
         begin = time.perf_counter()
@@ -87,7 +87,7 @@ def pointer(array: np.ndarray | None) -> ctypes.c_void_p:
 
 
 def peer_sets(sets: dict[str, np.ndarray]) -> np.ndarray:
-    """Parameter table of the peers: one row per quantity, one column per set."""
+    """Return the parameter table of the peers: one row per quantity, one column per set."""
     bearing, lubricant, load = RIG.bearing, RIG.lubricant, RIG.load
     assert bearing is not None
     assert lubricant is not None
@@ -174,7 +174,7 @@ def batch(folder: Path, rounds: int) -> None:
 
 
 def solvers(folder: Path, rounds: int, tasks: list[str]) -> None:
-    """Time T2 and T3, eight motions to a required friction error, by jbf and by numbalsoda.
+    """Time T2 and T3, eight motions to a required error of the friction, by jbf and by numbalsoda.
 
     numbalsoda has its best settings.
     """
@@ -193,7 +193,7 @@ def solvers(folder: Path, rounds: int, tasks: list[str]) -> None:
 
 
 def references(peers: ModuleType, order: int) -> np.ndarray:
-    """Eccentricities of the peers' own reference, stored next to the copy of the peers."""
+    """Return the eccentricities of the peers' reference solution, stored next to their copy."""
     kept = Path(peers.__file__).with_name(f"reference{order}.npy")
     if not kept.is_file():
         print(f"reference of {order} states: about a minute", file=sys.stderr)

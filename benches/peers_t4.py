@@ -1,4 +1,4 @@
-"""T4: four parameters fitted to eight runs, 16,000 points, by jbf and by the peers, in turn.
+"""Task T4: fit of four parameters to eight runs (16,000 points) by jbf and by its peers, in turn.
 
 `python benches/peers.py FOLDER --tasks T4`. The peers' own definition of the task (`t4.py`: data,
 start, fit methods) is imported from the copy of their folder. chi2 of every row is computed here
@@ -21,15 +21,15 @@ RIG = jbf.Rig.thesis()
 NAMES = ["f_m", "U_tr_m_s", "K0", "gamma"]
 BEST, FIRST = "lmfit, numbalsoda LSODA", "lmfit, solve_ivp LSODA in Python"
 CONVERGED = 0.5
-"""A fit has converged if its chi2 exceeds the least by less than this."""
+"""Largest excess of chi2 over the smallest one for a fit that has converged."""
 
 Found = tuple[np.ndarray, int]
-"""Parameters, and the number of simulations of all runs that they required."""
+"""Fitted parameters, and the number of simulations of all runs that the fit required."""
 
 
 @dataclass
 class Row:
-    """One fit method: number of timed rounds, and its results."""
+    """Fit method with the number of timed rounds, and its results."""
 
     fit: Callable[[], Found]
     rounds: int
@@ -38,7 +38,7 @@ class Row:
 
 
 def fit_task(rounds: int) -> None:
-    """Run the fits in turn and print a table; needs the peers' folder on `sys.path`."""
+    """Run the fits in turn and print a table; requires the folder of the peers in `sys.path`."""
     try:
         t4 = importlib.import_module("t4")
     except ImportError as error:
@@ -92,7 +92,7 @@ def _runs(t4: ModuleType) -> list[tuple[np.ndarray, tuple[float, float, float]]]
     """Return the peers' runs with shifted first and last samples.
 
     At these samples the speed is a rounding error, whose sign determines the friction in the data.
-    They are shifted by 1e-7 of the run's duration in the direction of that sign.
+    The samples are shifted by 1e-7 of the run's duration in the direction of that sign.
     """
     runs = []
     for times, w in zip(t4.TS, t4.WS, strict=True):
@@ -104,7 +104,7 @@ def _runs(t4: ModuleType) -> list[tuple[np.ndarray, tuple[float, float, float]]]
 
 
 def _chi2(t4: ModuleType, values: Sequence[float]) -> float:
-    """chi2 of all 16,000 points, by numbalsoda at 1e-11."""
+    """Return chi2 of all 16,000 points for the parameters `values`, by numbalsoda at 1e-11."""
     model = t4.Model(t4.numbalsoda_(2, "lsoda"), {"rtol": 1e-11, "atol": 1e-13, "seg": 1})
     return float(np.sum(((model(np.asarray(values)) - t4.DATA) / t4.SIG) ** 2))
 
@@ -138,7 +138,7 @@ def _print(t4: ModuleType, rows: dict[str, Row]) -> None:
 
 
 def _standard_errors(t4: ModuleType) -> np.ndarray:
-    """Standard errors of the parameters at the true values, from the exact derivatives."""
+    """Return the standard errors of the parameters at the true values, by exact derivatives."""
     runs = _runs(t4)
     done = jbf.trajectories(
         RIG,

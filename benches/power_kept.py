@@ -1,4 +1,4 @@
-"""Detection rate of effects compared with their predicted power: `python benches/power_kept.py`.
+"""Detection rates of effects compared with their predicted power: `python benches/power_kept.py`.
 
 The diagnosis of simulated campaigns without hidden effects reports two strengths per effect. At
 `detectable_80`, 80 % of similar campaigns would show it; at `distinguishable_80`, it would be
@@ -33,7 +33,11 @@ PROMISED = 0.80
 
 
 def at_strength(bare: jbf.Model, power: Power, value: float) -> jbf.Model:
-    """Return the model with the effect at this strength; its other size parameters scale alike."""
+    """Return the model with an effect whose size parameter is `value`.
+
+    The other size parameters of the effect are scaled by the same factor from their starting
+    values.
+    """
     page = jbf.effects()[power.effect]
     usual = {p.name: (p.starts[0], p.null) for p in page.parameters}
     start, null = usual[power.parameter]
@@ -53,7 +57,11 @@ def at_strength(bare: jbf.Model, power: Power, value: float) -> jbf.Model:
 def with_effect(
     bare: jbf.Model, strong: jbf.Model, runs: list[jbf.Run], draw: int
 ) -> list[jbf.Run]:
-    """Simulate the runs again with noise, and add the change caused by the effect."""
+    """Simulate the runs by a model with noise, and add the change of the friction by an effect.
+
+    The change is the difference between the predictions of `strong` (with the effect) and `bare`.
+    `draw` is the seed of the noise.
+    """
     again = simulated_runs(bare, runs, (), draw)
     changes = [
         a - b for a, b in zip(strong.predict_many(runs), bare.predict_many(runs), strict=True)
@@ -65,10 +73,10 @@ def with_effect(
 
 
 def campaign(seed: int, effects: Sequence[str] | None = None) -> Iterator[dict[str, Any]]:
-    """Yield the assessed diagnoses with each effect whose power the campaign states.
+    """Yield a row of results for each effect with a stated power, and each of two sizes.
 
-    The effect is simulated once at its detectable strength and once at its distinguishable
-    strength. Nothing is yielded if the diagnosis without a hidden effect names one. `effects`
+    The effect is added to the simulated runs at its detectable size and at its distinguishable
+    size. Nothing is yielded if the diagnosis of the original campaign names an effect. `effects`
     limits the effects.
     """
     rig, runs, _ = simulated(seed, campaign="short", coloured=seed % 2 == 1)
@@ -95,7 +103,7 @@ def answer(
     runs: list[jbf.Run],
     draw: int,
 ) -> dict[str, Any]:
-    """Diagnose the runs with the effect added, and return the assessed result as a row."""
+    """Diagnose simulated runs with an effect of size `value` added; return a row of results."""
     strong = at_strength(bare, power, value)
     again = jbf.diagnose(bare.rig, with_effect(bare, strong, runs, draw))
     could = {other for name in again.effects for other in (name, *again.alternatives[name])}

@@ -1,11 +1,12 @@
-"""Compare diagnoses with what is promised of them: `python benches/promises.py [FILE...]`.
+"""Compare diagnoses with the rates that the documentation states: `python benches/promises.py`.
 
-The files are JSON lines of `benches/hidden_effects`, `benches/recorded` and `benches/power_kept.py`
-(`--out`). For each promise with campaigns among them, docs/results/rates.csv receives the share of
-campaigns that kept it with a 95 % interval (Clopper & Pearson 1934), and docs/results/broken.csv
-the campaigns that broke it. Then the tables of docs/validation.md are written from the files in
-docs/results, so that a new figure is entered in one place. `--check` writes nothing, and exits with
-1 if a table differs; `--least N` exits with 1 if a promise has fewer campaigns.
+The arguments are files with the JSON lines of `benches/hidden_effects`, `benches/recorded` and
+`benches/power_kept.py` (`--out`). For each promise with campaigns among them,
+docs/results/rates.csv receives the fraction of campaigns that kept it with a 95 % interval (Clopper
+& Pearson 1934), and docs/results/broken.csv the campaigns that broke it. Then the tables of
+docs/validation.md are written from the files in docs/results, so that a new figure is entered in
+one place. `--check` writes nothing, and exits with 1 if a table differs; `--least N` exits with 1
+if a promise has fewer campaigns.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Promise:
-    """A promise, the campaigns to which it applies, and the condition under which it is kept."""
+    """Rate that the documentation states, with its campaigns and the condition for each."""
 
     words: str
     nominal: str
@@ -41,17 +42,17 @@ class Promise:
 
 
 def recorded(row: Row) -> bool:
-    """Whether the campaign has recording artefacts."""
+    """Return True if the campaign has recording artefacts."""
     return "artefacts" in row
 
 
 def hidden(row: Row) -> set[str]:
-    """The hidden effects of the catalogue."""
+    """Return the hidden effects of the catalogue."""
     return set(row["effects"] if recorded(row) else filter(None, row["hidden"].split("+")))
 
 
 def false_name(row: Row) -> bool:
-    """Whether a name was given that was not hidden, not even as a valid alternative."""
+    """Return True if the diagnosis names an effect that is neither hidden nor in a valid tie."""
     true = set() if row["kind"] == "foreign" else hidden(row)
     # A delayed force is a delay, whatever its cause.
     true = true.union(*(FAIR.get(name, set()) for name in row.get("artefacts", ())))
@@ -60,7 +61,7 @@ def false_name(row: Row) -> bool:
 
 
 def right(row: Row) -> bool:
-    """Whether exactly the hidden effects were named, or are contained in a valid tie."""
+    """Return True if the diagnosis names exactly the hidden effects, or they are in a valid tie."""
     return row["judged"] in ("right", "tied")
 
 
@@ -119,13 +120,15 @@ TABLE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.S)
 
 
 def interval(count: int, campaigns: int) -> tuple[float, float, float]:
-    """A share and its exact 95 % interval, in per cent."""
+    """Return the fraction `count / campaigns` and its exact 95 % interval, in per cent."""
     sure = stats.binomtest(count, campaigns).proportion_ci(0.95, method="exact")
     return 100.0 * count / campaigns, 100.0 * sure.low, 100.0 * sure.high
 
 
 def coverage(rows: Sequence[Row]) -> tuple[float, float, float, int]:
-    """Coverage of the parameter intervals of right results, its interval, and the campaigns.
+    """Return the coverage of parameter intervals, its 95 % interval, and the number of campaigns.
+
+    The coverage is that of right results, in per cent.
 
     The intervals of one campaign are correlated, so the error is that of means over campaigns.
     """
@@ -139,7 +142,7 @@ def coverage(rows: Sequence[Row]) -> tuple[float, float, float, int]:
 
 
 def delivered(rows: Sequence[Row]) -> Iterator[tuple[str, tuple[float, float, float, int]]]:
-    """Share, interval and campaigns of each statement that the rows judge."""
+    """Generate for each promise its name, the fraction that kept it, interval and campaigns."""
     for promise in PROMISES:
         relevant = [row for row in rows if promise.of(row)]
         if relevant:
@@ -152,7 +155,7 @@ def delivered(rows: Sequence[Row]) -> Iterator[tuple[str, tuple[float, float, fl
 
 
 def broken(rows: Sequence[Row]) -> Iterator[dict[str, str]]:
-    """Each campaign that broke a promise."""
+    """Generate a row for each campaign that broke a promise."""
     for promise in PROMISES:
         for row in rows:
             if promise.of(row) and not promise.kept(row):
@@ -165,13 +168,13 @@ def broken(rows: Sequence[Row]) -> Iterator[dict[str, str]]:
 
 
 def read(name: str) -> list[dict[str, str]]:
-    """Rows of a file of results."""
+    """Read the rows of a file in docs/results."""
     with (RESULTS / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def write(name: str, rows: Sequence[Mapping[str, str]]) -> None:
-    """Replace a file of results; its columns remain."""
+    """Replace the rows of a file in docs/results; its columns remain."""
     columns = list(read(name)[0])
     with (RESULTS / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")
@@ -180,7 +183,7 @@ def write(name: str, rows: Sequence[Mapping[str, str]]) -> None:
 
 
 def enter(rows: Sequence[Row]) -> None:
-    """Enter the rates of new campaigns, and the broken promises in place of those before."""
+    """Enter the rates of new campaigns, and replace the broken promises."""
     new = dict(delivered(rows))
     kept = [row for row in read("broken") if row["statement"] not in new]
     rates = read("rates")
@@ -253,7 +256,7 @@ TABLES = {"rates": _rates, "servo": _servo, "studies": _studies}
 
 
 def page(text: str) -> str:
-    """Return the text with every table written anew."""
+    """Return the text of docs/validation.md with every table written anew."""
 
     def table(match: re.Match[str]) -> str:
         head, *rows = TABLES[match[2]]()
@@ -264,7 +267,7 @@ def page(text: str) -> str:
 
 
 def main() -> int:
-    """Enter new results and write the page, or check it."""
+    """Enter new results and write docs/validation.md, or check it."""
     parser = argparse.ArgumentParser(prog="promises", description=__doc__.split(":")[0])
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
     parser.add_argument("--check", action="store_true", help="write nothing")

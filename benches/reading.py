@@ -1,5 +1,4 @@
-"""Time to read the file of a run, compared with numpy's reader of plain numbers:
-`python benches/reading.py`.
+"""Time to read the file of a run, compared with numpy's reader: `python benches/reading.py`.
 
 Pairs of readings in turn, in processor time; the result is the median of their ratios. Most of the
 work is what numpy omits: names and units of columns, quotes, empty cells, and the row and column of
@@ -22,7 +21,7 @@ HEADER = "time_s,angle_rad,velocity_m_s,friction_n,load_n"
 
 
 def seconds(read: Callable[[], object]) -> float:
-    """Processor time of one reading, s."""
+    """Return the processor time of one call of `read`, s."""
     begun = time.process_time()
     read()
     return time.process_time() - begun

@@ -1,5 +1,6 @@
-"""Diagnose one half of a real recording, predict the other half, and compare with fits by hand:
-`python benches/real_halves.py FOLDER [--law auto]`.
+"""Diagnose one half of a real recording, predict the other half, and compare with fits by hand.
+
+    .venv/bin/python benches/real_halves.py FOLDER [--law auto]
 
 FOLDER holds `leadscrew/drive1.csv` and `drive2.csv` (time_ms, speed_rpm, torque_pct: the torque of
 a drive, %), `seal/NAP310_1bar.csv` and so on, `tribometer/run.csv`, `emps/run.csv`,
@@ -32,7 +33,7 @@ from jbf.errors import Unfinished
 Array = npt.NDArray[np.float64]
 Halves = tuple[list[jbf.Run], list[jbf.Run]]
 SLOW = 0.05
-"""Share of the top speed below which the direction of a stroke is unknown."""
+"""Speed relative to the top speed below which the direction of a stroke is unknown."""
 LEAST = 15
 """Smallest number of samples of a run."""
 HAND_LAWS = ("coulomb", "stribeck")
@@ -45,18 +46,18 @@ HAND_EFFECTS = (
     ("stroke_dependence",),
     ("dry_load_dependence", "zero_load_dependence"),
 )
-"""Effects that are tried by hand in addition to the machine, if the recording can show them."""
+"""Effects that the fits by hand try in addition to the machine, if the recording shows them."""
 
 
 def columns(path: Path) -> dict[str, Array]:
-    """Return the columns of a CSV file by name."""
+    """Read the columns of a CSV file by name."""
     names = path.read_text(encoding="utf-8").split("\n", 1)[0].strip().split(",")
     values = np.loadtxt(path, delimiter=",", skiprows=1)
     return dict(zip(names, values.T, strict=True))
 
 
 def drive(path: Path) -> Halves:
-    """Split each sweep of a drive into its first and its second half."""
+    """Split each sweep of a drive in a recording into its first and its second half."""
     c = columns(path)
     t, v, f = c["time_ms"] / 1e3, c["speed_rpm"] * 2.0 * np.pi / 60.0, c["torque_pct"]
     fitted, held_out = [], []
@@ -67,7 +68,7 @@ def drive(path: Path) -> Halves:
 
 
 def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
-    """Return the samples `at` of a recording as a run; a pressure in kPa replaces the load."""
+    """Return the samples `at` of the columns `c` as a run; a pressure in kPa replaces the load."""
     t, v, f = (c[k][at] for k in ("time_s", "velocity_m_s", "friction_n"))
     others = {k: c[k][at] for k in ("position_m", "angle_rad") if k in c}
     if "pressure_pa" in c:
@@ -76,7 +77,7 @@ def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
 
 
 def strokes(path: Path) -> Halves:
-    """Split the pairs of strokes of a recording alternately into two halves."""
+    """Assign the pairs of strokes of a recording alternately to two halves."""
     c = columns(path)
     v = c["velocity_m_s"]
     sign = np.sign(np.where(np.abs(v) > SLOW * np.max(np.abs(v)), v, 0.0))
@@ -91,7 +92,7 @@ def strokes(path: Path) -> Halves:
 
 
 def all_strokes(folder: Path) -> Halves:
-    """Split the recordings at all pressures together, each as in `strokes`."""
+    """Assign the stroke pairs of the recordings at all pressures to two halves, as in `strokes`."""
     fitted, held_out = [], []
     for path in sorted(folder.glob("NAP310_*bar.csv")):
         for some, into in zip(strokes(path), (fitted, held_out), strict=True):
@@ -100,7 +101,7 @@ def all_strokes(folder: Path) -> Halves:
 
 
 def cycles(path: Path) -> Halves:
-    """Split the cycles of a reciprocating slide alternately into two halves.
+    """Assign the cycles of a reciprocating slide alternately to two halves.
 
     A cycle begins where the slide enters the upper fifth of its stroke. The contact is fully
     deflected there, at the beginning and at the end of each run.
@@ -115,7 +116,9 @@ def cycles(path: Path) -> Halves:
 
 
 def steady(folder: Path) -> Halves:
-    """Split the pairs of steady strokes of a cylinder alternately, with one run per valve voltage.
+    """Assign the pairs of steady strokes of a cylinder alternately to two halves.
+
+    There is one run per valve voltage.
 
     The ends of the travel are excluded, where the force of the end stop is measured.
     """
@@ -141,7 +144,7 @@ def halved(path: Path) -> Halves:
 
 
 def runs_of(path: Path) -> Halves:
-    """Split the runs numbered in the column `run` of a file alternately into two halves.
+    """Assign the runs numbered in the column `run` of a file alternately to two halves.
 
     If a column `powered` exists, only samples with power are used.
     """
@@ -153,7 +156,7 @@ def runs_of(path: Path) -> Halves:
 
 
 def files(pattern: Path) -> Halves:
-    """Split the files that match a pattern alternately, each without its first second."""
+    """Assign the files that match a pattern alternately to two halves, without the first second."""
     runs = []
     for path in sorted(pattern.parent.glob(pattern.name)):
         c = columns(path)
@@ -163,7 +166,7 @@ def files(pattern: Path) -> Halves:
 
 @dataclass(frozen=True)
 class Task:
-    """A recording, the function that splits it, the kind of its motion and its base law."""
+    """Recording with the function that splits it, the kind of its motion and its base law."""
 
     title: str
     path: Path
@@ -194,7 +197,7 @@ def plan(folder: Path, law: str) -> Iterator[Task]:
 
 
 def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], held_out: list[jbf.Run]) -> tuple[float, str]:
-    """Return the smallest error on the other half among the fits by hand, and its model."""
+    """Return the smallest held-out error among the fits by hand, and its model as text."""
     machine = ["sensor_offset", "inertia"]
     if all(run.angle_rad is not None for run in fitted):
         machine.append("gravity")
@@ -213,7 +216,7 @@ def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], held_out: list[jbf.Run]) -> tup
 
 
 def row(task: Task) -> str:
-    """Diagnose one recording and return its row of the table."""
+    """Diagnose one half of a recording and return its row of the table."""
     quantity = "force" if task.motion == "linear" else "torque"
     rig = jbf.Rig(drive=jbf.Drive(task.motion, quantity))
     fitted, held_out = (

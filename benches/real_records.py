@@ -1,5 +1,6 @@
-"""Every law in newtons, and the diagnosis, on recordings of real machines:
-`python benches/real_records.py FOLDER`.
+"""Fit every law in newtons to recordings of real machines, and diagnose them.
+
+    .venv/bin/python benches/real_records.py FOLDER
 
 FOLDER holds `emps/run.csv` (a ball-screw axis; its friction is the whole drive force) and
 `tribometer/run.csv` (reciprocating sliding); columns time_s, position_m, velocity_m_s, friction_n.
@@ -19,11 +20,11 @@ import numpy as np
 from jbf.records.motion.estimated_motion import estimate_motion
 
 MASS_KG, OFFSET_N = 95.1, -3.2
-"""Values of the ball-screw axis from its publication, subtracted before the fit."""
+"""Mass (kg) and force offset (N) of the ball-screw axis in its publication."""
 
 
 def without_inertia(run: jbf.Run) -> jbf.Run:
-    """Friction from a drive force: minus the inertial force of the mass and the sensor offset."""
+    """Return the run with the inertial force and the offset subtracted from the drive force."""
     assert run.friction is not None
     acceleration = estimate_motion(run, None).acceleration
     friction = run.friction - MASS_KG * acceleration - OFFSET_N
@@ -31,7 +32,7 @@ def without_inertia(run: jbf.Run) -> jbf.Run:
 
 
 def table(title: str, run: jbf.Run) -> None:
-    """Fit each law and print its RMS, its time and its parameters."""
+    """Fit each law to a recording and print its RMS, its time and its parameters."""
     assert run.friction is not None
     print(f"{title}: {len(run)} samples, RMS of the record {np.std(run.friction):.3g} N")
     for law in jbf.laws().values():
@@ -45,7 +46,7 @@ def table(title: str, run: jbf.Run) -> None:
 
 
 def diagnosed(title: str, run: jbf.Run) -> None:
-    """Diagnose with the Coulomb law and print the effects added with the error at each step."""
+    """Diagnose a recording with the Coulomb law; print the added effects and the errors."""
     diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
     print(f"{title}: law coulomb, diagnosed in {diagnosis.elapsed_s:.0f} s: {diagnosis.verdict}")
     for step in diagnosis.steps:
@@ -54,7 +55,7 @@ def diagnosed(title: str, run: jbf.Run) -> None:
 
 
 def main() -> int:
-    """Run the study on each recording."""
+    """Fit and diagnose each available recording and print the results."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("folder", type=Path, nargs="?", help="the recordings")
     folder = parser.parse_args().folder

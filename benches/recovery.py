@@ -1,8 +1,8 @@
 """Coverage of the intervals of a fit: `python benches/recovery.py [EFFECT...]`.
 
-For every effect of the catalogue, several rigs of the project's own simulator are drawn at random,
-and each is recorded many times with new noise. Every record is fitted with the right structure, and
-its 95 % intervals are compared with the truth. All random numbers follow from `--seed`.
+For every effect of the catalogue, several rigs of `simulator/rigsim` are drawn at random, and each
+is recorded many times with new noise. Every record is fitted with the right law and effect, and its
+95 % intervals are compared with the true values. All random numbers follow from `--seed`.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from rigsim.warmth import REFERENCE_C, draw_warmth
 
 NOISE_SHARE = 0.0175
 WIDTH = 1.959964
-"""Half-width of a 95 % interval, in standard errors."""
+"""Half-width of a 95 % interval in standard errors."""
 WANTED = (0.90, 0.98)
 
 
 @dataclass(frozen=True)
 class Truth:
-    """A rig with one effect, and its exact records by name."""
+    """Simulated rig with one effect, and its exact records by name."""
 
     base: rigsim.Base
     effects: dict[str, dict[str, float]]
@@ -45,12 +45,12 @@ class Truth:
 
 
 def motions_for(effect: str) -> rigsim.Campaign:
-    """Return the campaign that shows an effect, with several loads if required."""
+    """Return the standard campaign that shows an effect, with several loads if required."""
     return rigsim.standard("loads" if effect == "load_dependence" else "full")
 
 
 def make_truth(effect: str | None, seed: int, plan: rigsim.Campaign) -> Truth:
-    """Draw a random rig with an effect of usual strength, and record it without noise."""
+    """Draw a random rig with an effect of typical strength, and record it without noise."""
     base = draw_base(seed)
     random = np.random.default_rng([seed, zlib.crc32((effect or "").encode())])
     effects = {} if effect is None else {effect: rigsim.draw(effect, random)}
@@ -72,7 +72,7 @@ def make_truth(effect: str | None, seed: int, plan: rigsim.Campaign) -> Truth:
 
 
 def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[jbf.Run]:
-    """Return the records with measurement noise."""
+    """Return the records of a rig with measurement noise, as runs."""
     base = truth.base
     meter = rigsim.Noise(NOISE_SHARE * base.f_m * base.load_n, 0.5 if coloured else 0.0)
     return runs_of(
@@ -91,10 +91,10 @@ def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[
 def errors_of(
     truth: Truth, seed: Iterable[int], coloured: bool, bootstrap: int | None = None
 ) -> dict[str, float]:
-    """Estimate minus truth in standard errors, by name; NaN where a fit gives no interval.
+    """Return estimate minus true value in standard errors, by parameter, for new noise on a rig.
 
-    With `bootstrap`, standard errors that the fit reports as unreliable are replaced by those of
-    this number of fits to simulated records.
+    A parameter for which the fit gives no interval has NaN. With `bootstrap`, standard errors that
+    the fit reports as unreliable are replaced by those of this number of fits to simulated records.
     """
     runs = measured(truth, np.random.default_rng(list(seed)), coloured)
     # The temperature at which the simulator's own viscosity applies.
@@ -113,7 +113,7 @@ def repeat(
     coloured: bool,
     bootstrap: int | None = None,
 ) -> list[dict[str, float]]:
-    """Errors of all repeats on one rig."""
+    """Return the errors, in standard errors, of all repeats on one rig."""
     truth = make_truth(effect, 1000 * seed + rig, motions_for(effect or ""))
     return [errors_of(truth, (seed, rig, k), coloured, bootstrap) for k in range(repeats)]
 
@@ -127,7 +127,7 @@ def study(
     jobs: int,
     bootstrap: int | None = None,
 ) -> dict[str, list[float]]:
-    """Errors in standard errors, one list per parameter."""
+    """Return the errors of all repeats on all rigs, in standard errors, one list per parameter."""
     share = [repeats // rigs + (i < repeats % rigs) for i in range(rigs)]
     work = partial(_one_rig, effect, share, seed, coloured, bootstrap)
     rows: Iterator[list[dict[str, float]]]
@@ -153,7 +153,7 @@ def _one_rig(
 
 @dataclass(frozen=True)
 class Row:
-    """Summary of a parameter's errors.
+    """Summary of the errors of one parameter.
 
     `bias` is their median and `spread` a robust standard deviation, both in standard errors;
     correct intervals have 0 and 1. `none` counts fits without an interval.
@@ -187,7 +187,7 @@ HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no in
 
 
 def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
-    """Generate the table rows of one effect."""
+    """Generate the table rows of one effect, one per parameter."""
     for name, z in errors.items():
         row = Row.of(z)
         mark = "" if WANTED[0] <= row.covered <= WANTED[1] else " (!)"

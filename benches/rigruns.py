@@ -1,4 +1,4 @@
-"""Campaigns of the independent simulator in jbf's format: the only link between the two."""
+"""Campaigns of the independent simulator in the format of jbf: the only link between the two."""
 
 from __future__ import annotations
 
@@ -52,14 +52,17 @@ def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
 
 
 def rig_of(load_n: float) -> jbf.Rig:
-    """Return the rig for a load drawn by the simulator."""
+    """Return the rig of the simulator for a load drawn by it, N."""
     return jbf.Rig.thesis("4.2" if load_n == 104.0 else "4.3")
 
 
 def errors_in_sigma(
     fit: jbf.Fit, base: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
-    """Estimate minus truth in standard errors, by parameter; NaN where a fit gives no interval."""
+    """Return estimate minus true value in standard errors, by parameter.
+
+    A parameter for which the fit gives no interval has NaN.
+    """
     pages = parameters_of("journal", tuple(effects))
     values = {"f_m": base["f_m"], "U_tr_m_s": base["U_tr"], "K0": base["K0"]}
     values["gamma"] = base["gamma"]

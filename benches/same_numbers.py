@@ -1,4 +1,4 @@
-"""Compare the results of two versions of jbf: recorded by one, compared by the other.
+"""Compare the results of two versions of jbf, recorded by the first and compared by the second.
 
     python benches/same_numbers.py record before.json      # with the first version
     python benches/same_numbers.py compare before.json     # with the second version
@@ -33,7 +33,7 @@ VOLATILE = ("elapsed_s", "policy")
 
 
 def campaigns() -> dict[str, dict[str, Any]]:
-    """Return by name what is simulated and how it is diagnosed."""
+    """Return the campaigns by name, with the options of their simulation and diagnosis."""
     by_name: dict[str, dict[str, Any]] = {}
     for i, name in enumerate(sorted(CATALOGUE)):
         plan = "loads" if name == "load_dependence" else "short"
@@ -52,7 +52,7 @@ def campaigns() -> dict[str, dict[str, Any]]:
 
 
 def answers(name: str, options: dict[str, Any], seed: int) -> Row:
-    """Return all results of jbf for one campaign, as numbers and strings."""
+    """Simulate and diagnose one campaign, and return all results of jbf as numbers and strings."""
     law = options.get("law", "journal")
     rig, runs, _ = simulated(
         seed,
@@ -101,7 +101,10 @@ def digest(values: np.ndarray) -> list[float]:
 
 
 def differences(before: Any, after: Any, slack: float, place: str = "") -> list[str]:
-    """Return the differences between two results, one line each."""
+    """Return the differences between two results, one line each.
+
+    `slack` is the relative tolerance of numbers.
+    """
     if isinstance(before, dict) and isinstance(after, dict):
         lines = [f"{place}/{k}: only on one side" for k in before.keys() ^ after.keys()]
         for key in before.keys() & after.keys():
@@ -119,7 +122,7 @@ def differences(before: Any, after: Any, slack: float, place: str = "") -> list[
 
 
 def main() -> int:
-    """Record the results, or compare them with a record."""
+    """Record the results of this version, or compare them with a record."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )

@@ -42,16 +42,16 @@ class Task:
 
 @dataclass(frozen=True)
 class Answer:
-    """The assessed diagnosis of a campaign.
+    """Assessed diagnosis of a campaign.
 
     Attributes
     ----------
     judged
         `right`, `tied`, `false name`, `unexplained`, `missed` or `not reported`.
     machine
-        Whether exactly the terms of the drive's machine were found.
+        Whether exactly the terms of the drive itself (inertia, weight, offset) were found.
     ratio
-        RMS of the prediction of further runs, over that of a fit with the true terms.
+        Held-out RMS relative to that of a fit with the true terms.
     """
 
     task: Task
@@ -82,7 +82,7 @@ def tasks(kinds: list[str], seeds: range, law: str) -> Iterator[Task]:
 
 
 def answer(task: Task) -> Answer:
-    """Return the assessed diagnosis of a campaign; an exception becomes the result `error`."""
+    """Simulate and diagnose a campaign; an exception becomes the result `error`."""
     try:
         return diagnosed(task)
     except Exception as error:
@@ -124,7 +124,10 @@ def diagnosed(task: Task) -> Answer:
 
 
 def judged(task: Task, true: set[str], diagnosis: jbf.Diagnosis) -> str:
-    """Assess a diagnosis against the simulated effects `true`: one of the columns of `table`."""
+    """Assess a diagnosis against the simulated effects `true`.
+
+    The result is one of the columns of `table`.
+    """
     if task.kind == "unknown":
         return "right" if diagnosis.verdict == "unexplained" else "not reported"
     named = {*diagnosis.machine, *diagnosis.effects}
@@ -138,7 +141,7 @@ def judged(task: Task, true: set[str], diagnosis: jbf.Diagnosis) -> str:
 
 
 def table(answers: list[Answer]) -> Iterator[str]:
-    """Generate a table with one row per kind, and the processor time of a diagnosis."""
+    """Generate a table with one row per kind of campaign, and the processor time of a diagnosis."""
     columns = ("right", "tied", "false name", "unexplained", "missed", "not reported", "error")
     head = ("hidden", "campaigns", *columns, "machine right", "held-out ratio, median", "worst")
     yield f"| {' | '.join(head)} |"

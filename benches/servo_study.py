@@ -1,7 +1,7 @@
 """Parameters of simulated servo drives by `jbf.fit` with the right terms, and their intervals.
 
-Closed-loop motions, four kinds of time stamps, counted positions, filtered and differenced
-velocities, offsets between clocks, torque commands (`simulator/servosim`).
+The drives of `simulator/servosim` have closed-loop motions, four kinds of time stamps, counted
+positions, filtered and differenced velocities, offsets between clocks, and torque commands.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 import servosim
 
 RIGHT = 3.0
-"""Number of standard errors within which a parameter counts as right."""
+"""Largest error of a right parameter, in standard errors."""
 CLOSE = 0.03
-"""Relative error that counts as close, in addition to that."""
+"""Largest relative error of a parameter that is assessed as close, in addition to `RIGHT`."""
 INTERVAL = 1.96
-"""Half-width of a 95 % interval, in standard errors."""
+"""Half-width of a 95 % interval in standard errors."""
 
 
 def runs_of(campaign: servosim.Campaign) -> tuple[jbf.Rig, list[jbf.Run]]:
-    """Convert a simulated campaign to jbf's format."""
+    """Convert a simulated campaign to a `jbf.Rig` and its runs."""
     with tempfile.TemporaryDirectory() as folder:
         servosim.write(campaign, Path(folder))
         rig = jbf.read_rig(Path(folder) / "rig.toml")
@@ -40,7 +40,7 @@ def runs_of(campaign: servosim.Campaign) -> tuple[jbf.Rig, list[jbf.Run]]:
 
 
 def study(seed: int) -> dict[str, Any]:
-    """Fit the campaign of one seed."""
+    """Simulate and fit the campaign of one seed, and return its row of results."""
     campaign = servosim.simulate(seed)
     drawn = campaign.drawn
     plant, logger = drawn.plant, drawn.logger
@@ -80,7 +80,7 @@ def study(seed: int) -> dict[str, Any]:
 
 
 def line(row: dict[str, Any]) -> str:
-    """Format one campaign as a line."""
+    """Format the results of one campaign as a line."""
     head = (
         f"{row['seed']:5d} {'right' if row['right'] else 'WRONG'} {row['kind']:14s} "
         f"{row['rate_hz']:5.0f} Hz {row['stamps']:8s} {row['speed']:11s} {row['force']:9s} "
@@ -96,7 +96,7 @@ def line(row: dict[str, Any]) -> str:
 
 
 def summary(rows: list[dict[str, Any]]) -> str:
-    """Shares and coverage over all campaigns, and by kind."""
+    """Return the rates of right parameters and the coverage, over all campaigns and by kind."""
     fitted = [row for row in rows if "error" not in row]
     lines = [
         f"right: {sum(r['right'] for r in rows)} of {len(rows)}; all within {CLOSE:.0%}: "

@@ -1,4 +1,4 @@
-"""Time that `import jbf` and short commands take, each in a new process.
+"""Time of `import jbf` and of short commands, each in a new process.
 
 `python benches/startup.py --times 20` prints the shortest and the median time, and the processor
 time.
@@ -27,7 +27,7 @@ TASKS = {
 
 
 def turn(words: list[str]) -> tuple[float, float]:
-    """Wall-clock time and processor time of one run, s."""
+    """Return the wall-clock time and the processor time of one command in a new process, s."""
     before, start = os.times(), time.perf_counter()
     subprocess.run([sys.executable, *words], stdout=subprocess.DEVNULL, check=True)
     wall, after = time.perf_counter() - start, os.times()

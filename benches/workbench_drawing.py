@@ -60,7 +60,7 @@ def recording(folder: Path, samples: int) -> None:
 
 
 def drawn(page: Page, act: str) -> float:
-    """Milliseconds from an action in the page to the frame that shows it."""
+    """Return the time from an action in the page to the frame that shows its result, ms."""
     return float(
         page.evaluate(
             ACT,
@@ -70,7 +70,7 @@ def drawn(page: Page, act: str) -> float:
 
 
 def measured(page: Page, times: int) -> dict[str, list[float]]:
-    """Measure all cases, each `times` times."""
+    """Measure the drawing times of all cases, each `times` times, ms."""
     times_ms: dict[str, list[float]] = {case: [] for case in WAYS}
     for model in ("", ", with a model"):
         if model:
@@ -97,7 +97,7 @@ def measured(page: Page, times: int) -> dict[str, list[float]]:
 
 
 def main() -> int:
-    """Measure and print."""
+    """Measure the drawing times and print them."""
     parser = argparse.ArgumentParser(prog="workbench_drawing", description=__doc__.split(":")[0])
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--times", type=int, default=7)

@@ -1,4 +1,4 @@
-"""Prediction errors of a model where the sign of the speed is known."""
+"""Held-out errors of a model at samples where the sign of the speed is known."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ SLOWEST_M_S = 5e-4
 
 
 def held_out(model: jbf.Model, runs: list[jbf.Run]) -> dict[str, float]:
-    """Return RMS and mean absolute error over the runs, N."""
+    """Return RMS (`rms_n`) and mean absolute error (`mae_n`) of a model over the runs, N."""
     errors = []
     for run in runs:
         assert run.friction is not None

@@ -1,4 +1,4 @@
-"""Detection rate against the size of the hidden effect."""
+"""Plot of the detection rate against the size of the hidden effect."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ EDGES = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, np.inf)
 
 
 def detection(rows: list[Row], path: Path) -> None:
-    """Plot the share of single effects named, by the largest RMS over noise in a run."""
+    """Plot the fraction of single hidden effects that are named against their size.
+
+    The size is the largest RMS of the effect in a run, relative to the noise.
+    """
     single = [row for row in rows if row["kind"] == "single"]
     size = np.array([row["effect_over_noise"] for row in single])
     good = np.array([row["judged"] in ("right", "tied") for row in single])

@@ -12,9 +12,9 @@ from rigsim import BY_THERMOMETER, CATALOGUE, FOREIGN
 KINDS = ("single", "none", "pair", "foreign", "poor", "tied")
 STRENGTHS = (0.6, 1.0, 1.5)
 SLOW = ("drive_compliance", "sensor_lag", "inertia", "film_memory", "presliding")
-"""Effects that slow sweeps show hardly or not at all."""
+"""Effects that are hardly observable in slow sweeps."""
 ALIKE = ("coulomb_drag", "sensor_offset", "direction_asymmetry", "quadratic_drag", "time_delay")
-"""Effects that runs without reversal show, but may not distinguish."""
+"""Effects that are observable in runs without reversal, but may not be distinguishable."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Task:
 
     @property
     def campaign(self) -> str:
-        """Name of the simulator's standard campaign."""
+        """Name of the standard campaign of the simulator for this task."""
         if self.kind == "poor":
             return "slow"
         if self.kind == "tied":
@@ -43,18 +43,18 @@ class Task:
 
     @property
     def hidden(self) -> str:
-        """The hidden effects as one string."""
+        """Names of the hidden effects, joined by `+`; `-` if there are none."""
         return "+".join((*self.effects, *self.foreign)) or "-"
 
     @property
     def key(self) -> str:
-        """A unique name."""
+        """Unique name of the task."""
         colour = "coloured" if self.coloured else "white"
         return f"{self.kind}/{self.hidden}/{self.strength:g}/{colour}/{self.seed}"
 
 
 def _kind(kind: str, seed: int) -> Iterator[Task]:
-    """Generate one round of a kind; strength and noise colour rotate with the seed."""
+    """Generate the tasks of one kind for a seed; strength and noise colour depend on the seed."""
     coloured = seed % 2 == 1
     strength = STRENGTHS[seed % len(STRENGTHS)]
     names = sorted(set(CATALOGUE) - set(BY_THERMOMETER))
@@ -84,7 +84,10 @@ def _kind(kind: str, seed: int) -> Iterator[Task]:
 def tasks(
     kinds: tuple[str, ...], seeds: int, first_seed: int = 1, *, short: bool = False
 ) -> list[Task]:
-    """Return all campaigns of some kinds by round, so that an early stop is a fair sample."""
+    """Return the tasks of some kinds in the order of their seeds.
+
+    An early stop therefore leaves a fair sample.
+    """
     rounds = range(first_seed, first_seed + seeds)
     campaigns = [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]
     return [replace(task, short=short) for task in campaigns]

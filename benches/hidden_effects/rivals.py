@@ -1,4 +1,4 @@
-"""Effects named by simpler rules on the same runs, with the best setting of each rule."""
+"""Simpler rules that select effects for the same runs, each with its best setting."""
 
 from __future__ import annotations
 
@@ -19,14 +19,17 @@ THRESHOLDS = (0.003, 0.01, 0.03, 0.1, 0.3)
 
 
 class Rivals:
-    """The runs that a rule may fit, other runs of the same rig, and the fits made so far."""
+    """Simpler rules that select effects for the runs of a rig.
+
+    Some rules also use the errors on other runs of the rig. Fits are stored and reused.
+    """
 
     def __init__(self, rig: jbf.Rig, runs: list[jbf.Run], others: list[jbf.Run]) -> None:
         self.rig, self.runs, self.others = rig, runs, others
         self._fits: dict[frozenset[str], jbf.Fit | None] = {}
 
     def fit(self, effects: Sequence[str]) -> jbf.Fit | None:
-        """Return a fit, or None if the runs cannot show the effects."""
+        """Return the fit of the law with these effects, or None if the runs cannot show them."""
         key = frozenset(effects)
         if key not in self._fits:
             try:
@@ -37,19 +40,19 @@ class Rivals:
 
     @cached_property
     def bare(self) -> jbf.Fit:
-        """Fit of the law alone."""
+        """Fit of the law without effects."""
         fitted = self.fit(())
         assert fitted is not None
         return fitted
 
     def always_adequate(self) -> list[str]:
-        """Report that no effect is missing."""
+        """Select no effect."""
         return []
 
     def lowest_mae(self) -> list[str]:
         """Select the single effect, or none, with the lowest mean absolute error on other runs.
 
-        This is how complete models are ranked elsewhere.
+        Complete friction models are often compared in this way.
         """
         best: list[str] = []
         lowest = held_out(self.bare.model, self.others)["mae_n"]
@@ -61,7 +64,7 @@ class Rivals:
         return best
 
     def bic(self) -> list[str]:
-        """Add effects one by one while the BIC of a white residual decreases."""
+        """Add effects one by one while the BIC, with independent residuals, decreases."""
 
         def score(fit: jbf.Fit) -> float:
             free = len(fit.parameters)
@@ -80,9 +83,11 @@ class Rivals:
         return chosen
 
     def sparse_regression(self) -> list[str]:
-        """Select effects by sequentially thresholded least squares (pysindy) of the base law's
-        residual. The library is the same: the change caused by each effect at its usual strength.
-        The threshold is the one with the best prediction of other runs.
+        """Select effects by sparse regression of the residual of the base law.
+
+        The method is sequentially thresholded least squares (pysindy). The regressors are the
+        changes of the prediction by each effect at its starting values. The threshold is the one
+        with the smallest error on other runs.
         """
         from pysindy.optimizers import STLSQ
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 
 MOST_ALTERNATIVES = 2
-"""A tie with more alternatives than this per name does not count as a result."""
+"""Largest number of alternatives per name for a tie that is assessed as `tied`."""
 
 
 def judge(
@@ -17,10 +17,11 @@ def judge(
     foreign: bool = False,
     unseen: Sequence[str] = (),
 ) -> str:
-    """Assess a result as `right`, `tied`, `abstained` or `wrong`.
+    """Assess the effects that a diagnosis names as `right`, `tied`, `abstained` or `wrong`.
 
-    `tied`: all hidden effects are among the names of valid ties. `abstained`: the result reports
-    remaining structure, or that the effect could be hidden in these runs, and names nothing false.
+    `tied`: all hidden effects are among the named effects and their alternatives, of which there
+    are few. `abstained`: no name is false, and the diagnosis reports lack of fit, or that the
+    effect is not detectable in these runs.
 
     Parameters
     ----------
@@ -50,5 +51,5 @@ def judge(
 
 
 def unique_and_false(verdict: str, named: Sequence[str], truth: Collection[str]) -> bool:
-    """Whether a single set of names was given without alternatives and it is false."""
+    """Return True if a diagnosis without alternatives names an effect that is not hidden."""
     return verdict == "missing" and bool(set(named) - set(truth))

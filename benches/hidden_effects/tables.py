@@ -15,7 +15,7 @@ def _share(count: int, total: int) -> str:
 
 
 def summary(rows: list[Row]) -> str:
-    """Table of outcomes by kind of campaign, with time and held-out error."""
+    """Return a table of outcomes by kind of campaign, with time and held-out error."""
     lines = [
         "| hidden | campaigns | right | honest tie | abstained | wrong | held-out / noise, median "
         "| worst | s, median |",
@@ -35,7 +35,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def confusion(rows: list[Row]) -> str:
-    """Table of results by hidden effect, for campaigns with at most one hidden effect."""
+    """Return a table of the named effects by hidden effect, for at most one hidden effect."""
     results: dict[str, Counter[str]] = {}
     for row in rows:
         if row["kind"] == "pair":
@@ -56,7 +56,7 @@ def confusion(rows: list[Row]) -> str:
 
 
 def rivals(rows: list[Row]) -> str:
-    """Table of the shares of right results: jbf and each simpler rule, by kind of campaign."""
+    """Return a table of the rates of right results of jbf and each simpler rule, by kind."""
     known = [row for row in rows if "rivals" in row]
     if not known:
         return ""
@@ -73,7 +73,7 @@ def rivals(rows: list[Row]) -> str:
 
 
 def next_runs(rows: list[Row]) -> str:
-    """Share of ties that are resolved by the proposed run."""
+    """Return the rate of ties that the proposed run resolves, as text."""
     outcomes = [row["after_next_run"] for row in rows if row.get("after_next_run")]
     if not outcomes:
         return ""
@@ -86,7 +86,10 @@ def next_runs(rows: list[Row]) -> str:
 
 
 def shares(rows: list[Row], least: float) -> bool:
-    """Whether each kind reaches this share of good results; prints the kinds that do not."""
+    """Return True if the rate of right results and valid ties of each kind is at least `least`.
+
+    The kinds below are printed.
+    """
     good = True
     for kind in dict.fromkeys(row["kind"] for row in rows):
         acceptable = [row["judged"] in ("right", "tied") for row in rows if row["kind"] == kind]

@@ -1,4 +1,4 @@
-"""One campaign: simulate, diagnose, and predict further runs of the same rig."""
+"""Simulation, diagnosis and held-out prediction of one campaign."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from score import judge
 
 Row = dict[str, Any]
 WIDTH = 1.959964
-"""Half-width of a 95 % interval, in standard errors."""
+"""Half-width of a 95 % interval in standard errors."""
 
 
 def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Run], dict[str, Any]]:
-    """Simulate the rig and runs of a task, and return them with the true values."""
+    """Simulate the campaign of a task; return the rig, its runs and the true values."""
     return simulated(
         task.seed,
         task.effects,
@@ -37,7 +37,7 @@ def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Ru
 
 
 def after_run(task: Task, run: jbf.Run) -> str:
-    """Assess the diagnosis after another run has been added."""
+    """Assess the diagnosis of the task's campaign with an additional run."""
     # Every sample is used as a knot because a fast sine has few samples.
     knots = zip(run.time_s.tolist(), run.velocity.tolist(), strict=True)
     first = standard(task.campaign)
@@ -49,7 +49,7 @@ def after_run(task: Task, run: jbf.Run) -> str:
 
 
 def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> jbf.Run:
-    """Return another motion that the rig can make, as long as the proposed one."""
+    """Return a run with a random motion of the rig, as long as the run `like`."""
     step_s = float(np.median(np.diff(like.time_s)))
     limits = Limits(duration_s=len(like) * step_s).filled(Prepared.prepare(rig, runs))
     every = list(excitations(limits, step_s))
@@ -58,9 +58,9 @@ def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> j
 
 
 def next_runs(task: Task, diagnosis: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run]) -> Row:
-    """Assess the diagnosis after the proposed run and after a random one.
+    """Assess the diagnosis with the proposed run added, and with a random run added.
 
-    The result is None if no run was proposed.
+    Both results are None if no run was proposed.
     """
     if diagnosis.experiment is None:
         return {"after_next_run": None}
@@ -72,7 +72,7 @@ def next_runs(task: Task, diagnosis: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf
 
 
 def work(task: Task, with_rivals: bool) -> Row:
-    """Return all quantities of one campaign that the tables need."""
+    """Simulate and diagnose a campaign; return its row of results for the tables."""
     rig, runs, truth = simulate(task, task.campaign)
     _, others, _ = simulate(task, "heldout")
     begun = time.monotonic()

@@ -1,11 +1,11 @@
-"""Share of random mutants that the tests detect, one mutant at a time in a copy of the tree.
+"""Fraction of random mutants that the tests detect, one mutant at a time in a copy of the tree.
 
     python benches/mutation --package NAME --sample N --seed S --out F.jsonl [--reach REACH.json]
 
 `--package` names a package of `python/jbf`. Sites are drawn at random, with one of cosmic-ray's
 operators at each. The tests that reach the line (`reach.py`; without it, those that import the
 module) run, the quickest first, until one fails. Each mutant is a line of the record; a mutant in
-the record is not tried again (`--again` repeats its survivors). In contrast to `faults.py`, the
+the record is not tested again (`--again` repeats its survivors). In contrast to `faults.py`, the
 mutants are not chosen by hand.
 """
 
@@ -56,7 +56,7 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
 def tried_in(
     options: argparse.Namespace, package: str, bench: Bench, done: list[Trial]
 ) -> list[Trial]:
-    """Test the sample of one package; mutants in the record are taken from it."""
+    """Test random mutants of one package; results that are already in `done` are reused."""
     reach = Reach.read(options.reach) if options.reach.is_file() else by_imports(options.root)
     known = {t.name: t for t in done if (t.package, t.seed) == (package, options.seed)}
     files = sorted((options.root / options.sources / package).rglob("*.py"))
@@ -82,7 +82,7 @@ def tried_in(
 
 
 def main(given: list[str] | None = None) -> int:
-    """Test the mutants; return 1 if too few were caught."""
+    """Test the mutants of all selected packages; return 1 if too few were detected."""
     options = arguments(given)
     done = read(options.out) if options.out else []
     trials: list[Trial] = []

@@ -1,4 +1,4 @@
-"""Insert the faults of `faults.toml` one at a time and report which the fast tests notice.
+"""Insert the faults of `faults.toml` one at a time and report which the fast tests detect.
 
     python benches/mutation/faults.py [--only WORDS] [--least N]
 
@@ -27,12 +27,12 @@ from trial import Bench  # noqa: E402
 
 ROOT = HERE.parents[1]
 LONGEST_S = 900.0
-"""Processor time of one Rust test, s; a test that takes longer has noticed the fault."""
+"""Limit of the processor time of one Rust test, s; a test that exceeds it detects the fault."""
 
 
 @dataclass(frozen=True)
 class InsertedFault:
-    """One fault: in `file`, `old` occurs once and is replaced by `new`."""
+    """Deliberate fault: in `file`, the text `old` occurs once and is replaced by `new`."""
 
     what: str
     file: str
@@ -43,30 +43,30 @@ class InsertedFault:
 
     @property
     def name(self) -> str:
-        """The name in the output."""
+        """Name of the fault in the output."""
         return self.what
 
     @property
     def line(self) -> int:
-        """The line of the fault."""
+        """Number of the first line that the fault changes."""
         text = (ROOT / self.file).read_text("utf-8")
         return text[: text.index(self.old)].count("\n") + 1
 
     def applied(self, source: str) -> str:
-        """Return the source with the fault; raise if its text does not occur exactly once."""
+        """Return the source with the fault; raise if `old` does not occur exactly once."""
         if source.count(self.old) != 1:
             raise SystemExit(f"faults.toml: the text of '{self.what}' is not once in {self.file}")
         return source.replace(self.old, self.new)
 
 
 def read_faults(path: Path) -> list[InsertedFault]:
-    """Read the faults of a table."""
+    """Read the faults of a TOML file."""
     entries = tomlkit.parse(path.read_text("utf-8")).unwrap()["fault"]
     return [InsertedFault(**{**e, "test": tuple(e.get("test", ()))}) for e in entries]
 
 
 def noticed_by_cargo(copy: TreeCopy, fault: InsertedFault) -> bool:
-    """Whether a Rust test passes without the fault and fails with it."""
+    """Return True if a Rust test passes without the fault and fails with it."""
     path = copy.folder / fault.file
     before = path.read_text("utf-8")
     command = ["cargo", "test", "--quiet", *fault.test]
@@ -83,7 +83,7 @@ def noticed_by_cargo(copy: TreeCopy, fault: InsertedFault) -> bool:
 
 
 def main() -> int:
-    """Insert the selected faults; return 1 if fewer than `--least` were noticed."""
+    """Insert the selected faults; return 1 if fewer than `--least` were detected."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--only", default="", help="faults whose description contains this")
     parser.add_argument("--least", type=int, default=0, help="fail where fewer are noticed")

@@ -1,7 +1,8 @@
-"""Test files that may reach a module: those of its package, and those that import it.
+"""Test files that may reach a module, estimated from imports.
 
-Files of the package that share a word with the module's name come first. The others of the package
-follow by the number of imports between them and the module, then all other files.
+They are those of its package, and those that import the module. Files of the package that share a
+word with the name of the module come first. The other files of the package follow by the number of
+imports between them and the module, then all other files.
 """
 
 from __future__ import annotations
@@ -13,13 +14,13 @@ from pathlib import Path
 from reach import ANY, Reach
 
 QUICK_S, SLOW_S = 5.0, 12.0
-"""Assumed duration of a test file, s."""
+"""Assumed durations of test files, s."""
 SLOW = ("campaigns", "golden", "rigruns", "rigsim", "subprocess", "playwright")
-"""Test files that import one of these take longer."""
+"""Modules whose import marks a test file as slow."""
 
 
 def imported(path: Path) -> set[str]:
-    """The modules that a file imports, and the names that it takes from them."""
+    """Return the modules that a file imports, and the names that it imports from them."""
     modules = set()
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
@@ -78,7 +79,7 @@ def _order(
 
 
 def _steps(name: str, users: dict[str, set[str]]) -> dict[str, int]:
-    """Number of imports between a module and each module that uses it, itself included."""
+    """Return the number of imports between a module and each module that uses it, or itself."""
     steps, new = {name: 0}, {name}
     while new:
         new = {user for user, names in users.items() if user not in steps and names & new}
@@ -87,7 +88,10 @@ def _steps(name: str, users: dict[str, set[str]]) -> dict[str, int]:
 
 
 def _alike(module: Path, tests: list[str]) -> list[str]:
-    """Select tests for a lazily imported module by name, else those of the command line."""
+    """Select test files for a module that no test file imports.
+
+    They are the files that share a word with its name, otherwise those of the command line.
+    """
     words = {*module.stem.split("_")}
     return [t for t in tests if words & {*Path(t).stem.split("_")}] or [
         t for t in tests if Path(t).parent.name == "cli"

@@ -1,4 +1,4 @@
-"""Run a command with a limit of processor time, independent of the load of the machine."""
+"""Commands with a limit of processor time, which does not depend on the load of the machine."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ IDLE = 20.0
 def run(
     command: list[str], folder: Path, environment: dict[str, str], limit_s: float
 ) -> tuple[int | None, str, str]:
-    """Return exit code (None: out of time), output and errors; each process has the limit."""
+    """Run a command; return its exit code (None if it exceeded the limit), output and errors.
+
+    The limit applies to each process.
+    """
 
     def limited() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (int(limit_s), int(limit_s) + 5))

@@ -1,4 +1,4 @@
-"""Tests that run each line, and their durations, measured once by coverage contexts.
+"""Tests that run each line of the package, with their durations, measured by coverage contexts.
 
     python benches/mutation/reach.py [TESTS ...] --out FILE
 
@@ -25,7 +25,7 @@ from processor import run
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST_S = 900.0
-"""Processor time for one test file, s."""
+"""Limit of the processor time of one test file, s."""
 ANY = "0"
 """Key that represents all lines of a module."""
 BACK = 12
@@ -34,7 +34,7 @@ BACK = 12
 
 @dataclass(frozen=True)
 class Chosen:
-    """Tests for one mutant, the quickest first, and their duration without it, s."""
+    """Tests for one mutant, the quickest first, with their duration without the mutant, s."""
 
     tests: tuple[str, ...]
     seconds: float
@@ -42,7 +42,7 @@ class Chosen:
 
 @dataclass(frozen=True)
 class Reach:
-    """Duration of every test, s, and the tests that run each line of each module."""
+    """Duration of every test, s, and for each line of each module the tests that run it."""
 
     seconds: dict[str, float]
     lines: dict[str, dict[str, list[str]]]
@@ -58,7 +58,7 @@ class Reach:
         return cls(held["seconds"], named)
 
     def write(self, path: Path) -> None:
-        """Write as JSON; a test is represented by its index in the list."""
+        """Write the data as JSON, with each test represented by its index in a list."""
         place = {test: i for i, test in enumerate(self.seconds)}
         lines = {
             m: {n: [place[t] for t in of if t in place] for n, of in at.items()}
@@ -68,7 +68,7 @@ class Reach:
         path.write_text(text.replace('},"', '},\n"').replace('],"', '],\n"') + "\n", "utf-8")
 
     def by_file(self) -> Reach:
-        """Aggregate to test files and complete modules: smaller, and valid for longer."""
+        """Combine tests to test files and lines to modules: smaller, and valid for longer."""
         seconds: dict[str, float] = defaultdict(float)
         for test, took in self.seconds.items():
             seconds[test.split("::")[0]] += took
@@ -81,12 +81,12 @@ class Reach:
         return Reach({k: round(v, 1) for k, v in sorted(seconds.items())}, lines)
 
     def chosen(self, module: str, line: int, budget_s: float) -> Chosen:
-        """Return the test files that run a line, the quickest first, as many as the budget allows.
+        """Select the tests of the files that run a line, the quickest first, within `budget_s`.
 
         The tests of those files that run the line come first, then all others, because they may use
         a fixture that has run it. A line that runs during the import of its module is assigned all
         tests that reach the module. A line without tests, such as a later line of a long statement,
-        uses those of the line before it.
+        uses those of the preceding line.
         """
         at = self.lines.get(module, {})
         near = next((str(n) for n in range(line, line - BACK, -1) if str(n) in at), ANY)
@@ -108,7 +108,10 @@ class Reach:
 
 
 def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None:
-    """Run each test file under coverage; files that have already been run are skipped."""
+    """Run each test file under coverage and store its results in `folder`.
+
+    Existing results are reused.
+    """
     for file in files:
         name = file.removesuffix(".py").replace("/", "-")
         data, report = folder / f"{name}.cov", folder / f"{name}.xml"
@@ -129,14 +132,14 @@ def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None
 
 
 def _passed(report: Path) -> Iterator[tuple[str, float]]:
-    """Name and duration (s) of the tests that passed."""
+    """Generate name and duration (s) of each test that passed, from a JUnit report."""
     for case in ElementTree.parse(report).iter("testcase"):
         if not any(part.tag in ("failure", "error", "skipped") for part in case):
             yield case.get("name", ""), float(case.get("time", "0"))
 
 
 def gathered(folder: Path) -> Reach:
-    """Combine all measurements."""
+    """Combine the coverage data and reports of all test files in `folder`."""
     seconds: dict[str, float] = {}
     lines: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for report in sorted(folder.glob("*.xml")):
@@ -154,7 +157,7 @@ def gathered(folder: Path) -> Reach:
 
 
 def main() -> None:
-    """Measure, combine and write."""
+    """Measure all test files and write the combined data."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("tests", nargs="*", help="files of tests (python/tests)")
     parser.add_argument("--out", type=Path, required=True)

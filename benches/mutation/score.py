@@ -1,4 +1,4 @@
-"""Share of mutants caught, with a confidence interval for the number of trials."""
+"""Fraction of mutants that the tests detect, with its confidence interval."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from trial import Trial
 
 
 def interval(caught: int, total: int, level: float = 0.95) -> tuple[float, float]:
-    """Clopper-Pearson interval of a share (Biometrika 26, 1934)."""
+    """Return the Clopper-Pearson interval of the fraction caught / total (Biometrika 26, 1934)."""
     tail = 0.5 * (1.0 - level)
     lower = beta.ppf(tail, caught, total - caught + 1) if caught else 0.0
     upper = beta.ppf(1.0 - tail, caught + 1, total - caught) if caught < total else 1.0
@@ -19,7 +19,10 @@ def interval(caught: int, total: int, level: float = 0.95) -> tuple[float, float
 
 
 def read(path: Path) -> list[Trial]:
-    """Read the trials of a record, the last of each name; incomplete lines are skipped."""
+    """Read the trials of a record.
+
+    The last trial of each mutant counts, and incomplete lines are skipped.
+    """
     trials: dict[tuple[str, int, str], Trial] = {}
     for line in path.read_text("utf-8").splitlines() if path.is_file() else []:
         try:
@@ -31,7 +34,7 @@ def read(path: Path) -> list[Trial]:
 
 
 def table(trials: list[Trial]) -> str:
-    """Format one row per package, and one for all."""
+    """Format a table with one row per package, and one for all."""
     packages: dict[str, list[Trial]] = defaultdict(list)
     for trial in trials:
         packages[trial.package].append(trial)

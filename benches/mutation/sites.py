@@ -1,4 +1,4 @@
-"""Possible faults in the source of a package: sites and operators of cosmic-ray."""
+"""Possible mutants of the source of a package, from the operators of cosmic-ray."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ Mutants such as `a >> b` of two floats always fail and would inflate the rate.
 
 @dataclass(frozen=True)
 class Fault:
-    """One mutant: the `occurrence`-th site of an operator in a file."""
+    """Mutant: the `occurrence`-th site of an operator in a file."""
 
     file: str
     line: int
@@ -53,11 +53,11 @@ class Fault:
 
     @property
     def name(self) -> str:
-        """Name in the record."""
+        """Name of the mutant in the record."""
         return f"{self.file}:{self.line}:{self.column} {self.operator} {self.occurrence}"
 
     def applied(self, source: str) -> str:
-        """Return the source with the fault applied."""
+        """Return the source with the mutant inserted."""
         made = MutationVisitor.mutate_code(source, _operator(self.operator), self.occurrence)
         if made is None:
             raise ValueError(f"{self.name} has no place")
@@ -76,7 +76,7 @@ def _nodes(node: NodeOrLeaf) -> Iterator[NodeOrLeaf]:
 
 
 def _is_for_types(node: NodeOrLeaf) -> bool:
-    """Whether a node is in an annotation or under `if TYPE_CHECKING`, which are never run."""
+    """Return True if a node is in an annotation or under `if TYPE_CHECKING`, and is never run."""
     while node.parent is not None:
         above = node.parent
         if above.type == "annassign" and node is above.children[1]:
@@ -92,7 +92,7 @@ def _is_for_types(node: NodeOrLeaf) -> bool:
 
 
 def faults_of(source: str, file: str) -> list[Fault]:
-    """Return every possible fault of a source."""
+    """Return every possible mutant of a source file."""
     tree = load_grammar().parse(source)
     nodes = list(_nodes(tree))
     faults = []
@@ -109,7 +109,7 @@ def faults_of(source: str, file: str) -> list[Fault]:
 
 
 def _compiles(fault: Fault, source: str) -> bool:
-    """Whether the mutant compiles; some, such as `**` of a dictionary, need no test."""
+    """Return True if the mutant compiles; some, such as `**` of a dictionary, do not."""
     try:
         compile(fault.applied(source), fault.file, "exec")
     except SyntaxError:
@@ -118,7 +118,7 @@ def _compiles(fault: Fault, source: str) -> bool:
 
 
 def drawn(root: Path, files: list[Path], seed: str) -> Iterator[Fault]:
-    """Generate one fault per site, both in random order.
+    """Generate one mutant per site; sites and mutants are in random order.
 
     A longer sample with the same seed begins with the shorter one.
     """

@@ -1,4 +1,4 @@
-"""A copy of the source tree, in which one file at a time is changed and tested."""
+"""Copy of the source tree, in which one file at a time is changed and tested."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 class TreeCopy:
-    """The tree on disk without the files that git ignores, in a separate directory."""
+    """Copy of the files that git tracks or would add, in a separate directory."""
 
     def __init__(self, root: Path, folder: Path) -> None:
         self.root, self.folder = root, folder
@@ -25,7 +25,7 @@ class TreeCopy:
 
     @cached_property
     def environment(self) -> dict[str, str]:
-        """Variables for Python to import the copy; cargo builds in target/mutation of the tree."""
+        """Environment variables with which Python imports the copy and cargo builds apart from it."""
         parts = ("python", "simulator", "benches", "python/tests")
         return os.environ | {
             "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"])),

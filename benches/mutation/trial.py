@@ -1,4 +1,4 @@
-"""One mutant: inserted into a copy of the tree, tested by the tests that reach it, and removed."""
+"""Trial of one mutant: it is inserted into a copy of the tree, tested, and removed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ NO_TESTS, PASSED, USAGE = 5, 0, 4
 
 @dataclass
 class Trial:
-    """Result of a mutant: `caught`, `timeout` (also caught), `survived` or `not reached`."""
+    """Result of the trial of a mutant.
+
+    The result is `caught`, `timeout` (also caught), `survived` or `not reached`.
+    """
 
     name: str
     file: str
@@ -37,17 +40,17 @@ class Trial:
 
     @property
     def caught(self) -> bool:
-        """Whether the tests noticed the mutant."""
+        """True if a test failed or exceeded its time limit."""
         return self.word in ("caught", "timeout")
 
     def row(self) -> dict[str, Any]:
-        """Return the fields as a line of the record."""
+        """Return the result as a line of the record."""
         return asdict(self)
 
 
 @dataclass
 class Bench:
-    """A copy of the tree, and which tests pass in it without any fault."""
+    """Copy of the tree for trials, with the tests that pass in it without a mutant."""
 
     copy: TreeCopy
     sound: dict[str, bool] = field(default_factory=dict)
@@ -55,7 +58,7 @@ class Bench:
     def pytest(
         self, tests: list[str], limit_s: float, without: Sequence[str] = ()
     ) -> tuple[int | None, str]:
-        """Run tests in order up to the first failure, except those in `without`.
+        """Run tests in the copy, in order, up to the first failure, except those in `without`.
 
         Returns the exit code (None: out of time) and the output.
         """
@@ -67,14 +70,14 @@ class Bench:
         return code, output
 
     def is_sound(self, test: str) -> bool:
-        """Whether a test passes without a fault; otherwise its failure is not evidence."""
+        """Return True if a test passes without a mutant; otherwise its failure is not evidence."""
         if test not in self.sound:
             code, _ = self.pytest([test], 600.0)
             self.sound[test] = code == PASSED
         return self.sound[test]
 
     def tried(self, fault: Fault, chosen: Chosen) -> Trial:
-        """Insert a mutant, run its tests and return the result."""
+        """Insert a mutant into the copy, run its tests and return the result."""
         path = self.copy.folder / fault.file
         before = path.read_text("utf-8")
         after = fault.applied(before)

@@ -1,4 +1,4 @@
-"""A labelled campaign on disk, and the row of results that a study stores for it."""
+"""Labelled campaign on disk, and the row of results that a study stores for it."""
 
 from __future__ import annotations
 
@@ -39,5 +39,5 @@ class Case:
 
     @property
     def kind(self) -> str:
-        """`none`, `single` or `pair`, by the number of hidden effects."""
+        """Kind of the campaign: `none`, `single` or `pair`, by the number of hidden effects."""
         return ("none", "single", "pair")[min(len(self.effects), 2)]

@@ -1,4 +1,4 @@
-"""Labelled campaigns that already exist on disk."""
+"""Reader of labelled campaigns that already exist on disk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Assessment of a diagnosis against the hidden effects, and the artefacts that were found."""
+"""Assessment of a diagnosis against the hidden effects and the simulated recording artefacts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 OUTCOMES = ("right", "tied", "named falsely", "unexplained", "missed", "failed")
 
 FAIR = {"skew": {"time_delay"}}
-"""Names that correctly describe an artefact: a delayed force is a delay, whatever its cause."""
+"""Effects that correctly describe an artefact; a delayed force is a delay, whatever its cause."""
 
 FOUND_AS: dict[str, set[str]] = {
     "backward_velocity": {"coarse_speed", "filtered_speed", "late_speed", "late_channel"},
@@ -32,10 +32,10 @@ FOUND_AS: dict[str, set[str]] = {
     "slow_force": {"interpolated", "held_samples"},
     "spikes": {"glitches"},
 }
-"""The kinds of finding that correctly report an artefact; any one suffices. None for `off_grid`."""
+"""Kinds of finding that report an artefact correctly, any of them; None for `off_grid`."""
 
 ALWAYS_FAIR = {"unsettled_start"}
-"""Findings that are true of every campaign in this study."""
+"""Kinds of finding that are true of every campaign in this study."""
 
 
 def judge(
@@ -45,7 +45,7 @@ def judge(
     named: Sequence[str],
     alternatives: Mapping[str, Sequence[str]],
 ) -> str:
-    """Assess a result as one of `OUTCOMES` except `failed`.
+    """Assess the effects that a diagnosis names as one of `OUTCOMES` except `failed`.
 
     - `right`: exactly the hidden effects are named, and no unexplained structure is reported.
     - `tied`: `ambiguous`, every hidden effect is among the tied names, and there are not more names
@@ -70,9 +70,11 @@ def judge(
 
 
 def found(artefacts: Iterable[str], kinds: Iterable[str]) -> tuple[list[str], list[str], list[str]]:
-    """Return artefacts reported by a finding, artefacts not reported, and false findings.
+    """Compare the artefacts of a campaign with the kinds of the reported findings.
 
-    Artefacts that no finding can report (`off_grid`) are in neither list.
+    Returns the artefacts that a finding reports, those that none reports, and the false findings.
+
+    Artefacts that no finding can report (`off_grid`) are in none of the lists.
     """
     reported = set(kinds)
     can = [name for name in artefacts if name in FOUND_AS]

@@ -1,4 +1,4 @@
-"""A campaign in a separate process that is ended if it takes too long."""
+"""Assessment of a campaign in a separate process with a time limit."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ ONE = Path(__file__).with_name("one.py")
 
 
 def scored(case: Case, limit_s: float) -> Row:
-    """Return the row of a case, assessed as `failed`, with the reason, if it broke or took too
-    long. `limit_s` is in seconds of processor time. If processor time cannot be limited, or the
-    process waits, the limit is `PATIENCE` times as long in wall-clock time.
+    """Diagnose and assess a case in a separate process, and return its row of results.
+
+    The outcome is `failed`, with the reason, if the process fails or takes longer than `limit_s` of
+    processor time. If processor time cannot be limited, or the process waits, the limit is
+    `PATIENCE` times as long in wall-clock time.
     """
     row: Row = {
         "key": case.key,

@@ -1,7 +1,7 @@
-"""Process one campaign from its files to a row: `python one.py < case.json > row.json`.
+"""Diagnose one campaign from its files: `python one.py < case.json > row.json`.
 
-A separate process, so that it can be ended if it hangs. The limit is processor time, which does not
-depend on the load of the machine.
+The program is a separate process, so that it can be ended if it takes too long. The limit is
+processor time, which does not depend on the load of the machine.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ except ImportError:  # not on Windows
     resource = None
 
 SLOWEST_M_S = 5e-4
-"""Speed below which the sign of a measured speed is uncertain."""
+"""Speed below which the sign of a measured speed is uncertain, m/s."""
 
 SETTLED_S = 2.0
-"""Time after which a film has forgotten its state at the start of the run."""
+"""Duration of the initial-state transient of a film, s."""
 
 
 def held_out(model: jbf.Model, runs: Sequence[jbf.Run]) -> tuple[float, float]:
-    """RMS of record minus prediction, N: of all moving samples, and of those after settling."""
+    """Return the held-out RMS over all moving samples, and over those after the transient, N."""
     every, late = [], []
     for run in runs:
         assert run.friction is not None
@@ -46,7 +46,7 @@ def held_out(model: jbf.Model, runs: Sequence[jbf.Run]) -> tuple[float, float]:
 
 
 def answered(case: Case) -> Row:
-    """Diagnose a campaign and assess the result."""
+    """Diagnose a campaign, assess the result and return its row."""
     begun, worked = time.monotonic(), time.process_time()
     rig = jbf.read_rig(f"{case.runs}/rig.toml")
     diagnosis = jbf.diagnose(rig, jbf.read_runs([case.runs]))
@@ -76,7 +76,10 @@ def answered(case: Case) -> Row:
 
 
 def main() -> None:
-    """Read a case and write its row; `one.py SECONDS` limits the processor time."""
+    """Read a case from standard input and write its row of results.
+
+    `one.py SECONDS` limits the processor time.
+    """
     if len(sys.argv) > 1 and resource is not None:
         most = math.ceil(float(sys.argv[1]))
         resource.setrlimit(resource.RLIMIT_CPU, (most, most + 5))

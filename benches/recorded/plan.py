@@ -19,7 +19,7 @@ from rigsim.recording import ARTEFACTS, OFF_GRID, ONE_OF, STRENGTHS
 
 KINDS = ("none", "single", "pair")
 CLEAN = {"none": 4, "single": 12, "pair": 4}
-"""Number of campaigns per round that are recorded without artefacts."""
+"""Number of campaigns per round that are recorded without artefacts, by kind."""
 COMBINATIONS = 12
 A_ROUND = 1000
 SHORT = (
@@ -51,7 +51,7 @@ class Task:
 
     @property
     def key(self) -> str:
-        """A unique name."""
+        """Unique name of the task."""
         hidden = "+".join(self.effects) or "nothing"
         return f"{'+'.join(self.artefacts)}/{self.strength}/{hidden}/{self.seed}"
 
@@ -88,7 +88,7 @@ def _round(number: int) -> list[Task]:
 def tasks(
     kinds: tuple[str, ...], seeds: int, first_seed: int = 1, artefacts: tuple[str, ...] = ()
 ) -> list[Task]:
-    """Return all campaigns of some kinds, limited to recordings with these artefacts if given."""
+    """Return the tasks of some kinds, limited to recordings with the given artefacts, if any."""
     rounds = itertools.chain.from_iterable(_round(n) for n in range(first_seed, first_seed + seeds))
     return [
         task
@@ -103,7 +103,7 @@ def _samples(seed: int, effects: tuple[str, ...]) -> float:
 
 
 def short(first_seed: int = 1) -> list[Task]:
-    """Return a dozen small campaigns: those with few samples, from the first seed on."""
+    """Return the tasks of a dozen small campaigns with few samples, from the first seed on."""
     seeds = itertools.count(A_ROUND * first_seed)
     planned = []
     for artefacts, effects in SHORT:

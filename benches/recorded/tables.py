@@ -32,7 +32,7 @@ def _seconds(rows: Sequence[Row]) -> list[str]:
 
 
 def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
-    """Outcomes, held-out error over noise, artefacts found, and time, by group."""
+    """Return a table of outcomes, held-out error over noise, found artefacts and time, by group."""
     heads = [title, "campaigns", *OUTCOMES, "all named"]
     heads += ["held-out, median", "worst", "artefacts found", "CPU s, median", "worst"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
@@ -55,7 +55,7 @@ def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
 
 
 def recorded(row: Row) -> bool:
-    """Whether the recording has an artefact other than starts and stops between samples."""
+    """Return True if the recording has an artefact other than starts and stops between samples."""
     return set(row["artefacts"]) != {"off_grid"}
 
 
@@ -67,7 +67,7 @@ def _line(what: str, rows: Sequence[Row], good: Callable[[Row], bool]) -> str:
 
 
 def totals(rows: Sequence[Row]) -> str:
-    """Summary of the required properties in a few lines; failed campaigns count as not good."""
+    """Return a summary of the required rates in a few lines; failed campaigns are not right."""
     clean = [row for row in rows if not recorded(row)]
     dirty = [row for row in rows if recorded(row)]
     one = [row for row in dirty if row["kind"] == "single"]
@@ -102,12 +102,12 @@ def _names(row: Row) -> bool:
 
 
 def kept(rows: Sequence[Row]) -> float:
-    """Share of results that are right or valid ties."""
+    """Return the fraction of campaigns whose result is right or a valid tie."""
     return float(np.mean([row["judged"] in ("right", "tied") for row in rows])) if rows else 0.0
 
 
 def line(row: Row) -> str:
-    """Format a campaign as one line, for progress output."""
+    """Format the result of a campaign as one line, for progress output."""
     named = ",".join(row["named"]) or "-"
     held = f"{row['held_out_over_noise']:7.3f}" if "held_out_over_noise" in row else "      -"
     hidden = ",".join(row["effects"]) or "-"

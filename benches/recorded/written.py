@@ -1,4 +1,4 @@
-"""Write a simulated campaign as the files that a user would have."""
+"""Writer of a simulated campaign as the files that a user would have."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rigsim.recording import write_recorded
 
 
 def written(task: Task, folder: Path) -> Case:
-    """Write the campaign of a task and its held-out runs below a folder."""
+    """Simulate and write the campaign of a task and its held-out runs; return the case."""
     name = task.key.replace("/", "_")
     runs, held_out = folder / "cases" / name, folder / "heldout" / name
     strength = "usual" if task.strength == "-" else task.strength

@@ -2,10 +2,10 @@
 
 `python benches/torture`. Every case is a rig and a campaign drawn at random (`draw.py`): scales
 over six decades, one to four runs, ten to two thousand samples, no motion, one speed, noise alone,
-zeros. Each must give a result, or an error of one line that states what these runs cannot show.
-Faults are other exceptions, warnings of a library, numbers that are not finite, a bound as a value,
-and the verdict `adequate` with an error far above the noise. The limit is `--limit` seconds of
-processor time.
+zeros. Each case must have a result, or an error of one line that states what these runs cannot
+show. Faults are other exceptions, warnings of a library, numbers that are not finite, values at a
+bound, and the verdict `adequate` with an error far above the noise. The limit is `--limit` seconds
+of processor time.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from draw import Case, draw
 from jbf.models.catalogue import parameters_of
 
 FAR_OFF = 3.0
-"""Ratio to the noise above which a model with over a hundred samples is not adequate."""
+"""Ratio of RMS to noise above which a model of more than a hundred samples is not adequate."""
 
 
 def out_of_time(_signal: int, _frame: FrameType | None) -> None:
-    """Raise because the limit of processor time is reached."""
+    """Signal handler that raises an exception because the limit of processor time is reached."""
     raise TimeoutError
 
 
 def complaints(case: Case, fitted: jbf.Fit) -> Iterator[str]:
-    """Generate the faults of a fit's numbers."""
+    """Generate a message for each fault in the numbers of a fit."""
     pages = parameters_of(fitted.model.law, tuple(fitted.model.effects))
     for name, known in fitted.parameters.items():
         page = pages[name]
@@ -52,7 +52,7 @@ def complaints(case: Case, fitted: jbf.Fit) -> Iterator[str]:
 
 
 def judge(case: Case) -> tuple[str, list[str]]:
-    """Return the result and its faults."""
+    """Fit and diagnose a case; return the result as text, and its faults."""
     wrong: list[str] = []
     try:
         fitted = jbf.fit(case.rig, case.runs, law="stribeck" if case.law == "auto" else case.law)
@@ -77,7 +77,7 @@ def judge(case: Case) -> tuple[str, list[str]]:
 
 
 def tried(seed: int, limit_s: float) -> dict[str, object]:
-    """Run one case and return the result, its faults and the time."""
+    """Run the case of a seed; return the result, its faults and the processor time."""
     case = draw(seed)
     signal.signal(signal.SIGPROF, out_of_time)
     signal.setitimer(signal.ITIMER_PROF, limit_s)
@@ -100,7 +100,7 @@ def tried(seed: int, limit_s: float) -> dict[str, object]:
 
 
 def kept(path: Path | None) -> list[dict[str, object]]:
-    """Read the cases of a record; incomplete lines are skipped."""
+    """Read the results of a record; incomplete lines are skipped."""
     rows = []
     for line in path.read_text("utf-8").splitlines() if path is not None and path.exists() else []:
         try:

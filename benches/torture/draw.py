@@ -13,12 +13,12 @@ Array = npt.NDArray[np.float64]
 Random = np.random.Generator
 
 KINDS = ("friction", "friction", "friction", "noise", "zeros", "constant", "own model")
-"""Kinds of force: mostly friction, as in most real recordings."""
+"""Kinds of the force in a case; most are friction, as in real recordings."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A campaign and its known noise.
+    """Campaign with unrealistic properties, and its known noise.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ def _strokes(t: Array, top: float, random: Random) -> Array:
 
 
 def _turns(t: Array, random: Random) -> float:
-    """Return an angular frequency with several periods in this record, rad/s."""
+    """Return an angular frequency with several periods in the record, rad/s."""
     return float(2.0 * np.pi * random.uniform(0.5, 12.0) / max(t[-1], 1e-12))
 
 
@@ -80,7 +80,7 @@ MOTIONS: dict[str, Callable[[Array, float, Random], Array]] = {
 
 
 def friction(v: Array, top: float, force_n: float, random: Random) -> Array:
-    """Coulomb friction, a Stribeck peak and a viscous part, in random proportions."""
+    """Return Coulomb friction, Stribeck peak and viscous friction at `v`, in random proportions."""
     dry, peak, viscous = random.dirichlet([1.0, 1.0, 1.0])
     slow = top * 10.0 ** random.uniform(-2.0, 0.0)
     level = dry + peak * np.exp(-((v / slow) ** 2))
@@ -88,7 +88,7 @@ def friction(v: Array, top: float, force_n: float, random: Random) -> Array:
 
 
 def _rig(random: Random, force_n: float) -> jbf.Rig:
-    """Draw a bearing for about this force, or a rig without a bearing."""
+    """Draw a rig with a bearing for about the force `force_n`, or a rig without a bearing."""
     if random.random() < 0.5:
         return jbf.Rig()
     radius = 10.0 ** random.uniform(-3.0, 0.0)

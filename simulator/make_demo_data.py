@@ -31,7 +31,7 @@ UNSEEN = Campaign("demo_unseen", (triangle("triangle_0.5", 38.0, 0.12, 0.5),))
 
 
 def main() -> None:
-    """Write both campaigns."""
+    """Simulate and write both campaigns."""
     for name, effects in (("hidden", ["coulomb_drag", "sensor_lag"]), ("plain", [])):
         folder = OUT / name
         truth = write_campaign(folder, SEED, effects, campaign=TAUGHT)

@@ -1,4 +1,7 @@
-"""python -m rigsim OUT: write a measurement campaign with hidden effects; print the truth."""
+"""Write a simulated measurement campaign with hidden effects: `python -m rigsim OUT`.
+
+The true values are printed.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; 0 on success, 2 on wrong input."""
+    """Run the command line; return 0 on success, 2 on invalid input."""
     given = _parser().parse_args(arguments)
     options = (given.effects, given.strength, given.noise, given.coloured)
     try:

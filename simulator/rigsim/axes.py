@@ -70,24 +70,24 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
     "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
 }
-"""Parameter ranges at strength 1, at which an effect is several times as large as the noise."""
+"""Ranges of the parameters at strength 1, at which an effect is several times as large as noise."""
 OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
-"""Effects that can be observed only if the temperature changes."""
+"""Effects that can be observed only if the temperature varies."""
 
 STEP_S = 0.01
 RUN_S = 40.0
 ARM_M = 1.0
-"""A joint with a radius of one metre, so that its angle (rad) equals the path (m)."""
+"""Radius of a joint, m; with one metre, its angle (rad) equals the path (m)."""
 COUNTS_PER_M = 2.0e4
 LOADS_N = (60.0, 100.0, 160.0)
 
 
 @dataclass(frozen=True)
 class AxisRun:
-    """A recorded run.
+    """Recorded run of a drive.
 
-    Time (s), angle (rad) or position (m), speed (m/s), force (N), load (N), and the temperature (C)
-    if there is a thermometer.
+    The fields are time (s), angle (rad) or position (m), speed (m/s), force (N), load (N), and the
+    temperature (C) if there is a thermometer.
     """
 
     name: str
@@ -119,8 +119,8 @@ def axis_campaign(
     """Simulate the runs of one drive, each under one of three loads, and return the true values.
 
     `swing` scales the motion: with a factor of 8 it is that of a joint, one or two radians to
-    either side. The temperature changes if an effect requires it or if `temperature` gives its
-    course.
+    either side. The temperature varies if an effect requires this, or as specified by
+    `temperature`.
     """
     rng = np.random.default_rng([seed, 77])
     hidden = {name: draw_axis(name, rng, strength) for name in effects}
@@ -181,7 +181,7 @@ def _force(
     time: Vector,
     celsius: Vector | None,
 ) -> Vector:
-    """Force that the drive must apply, N."""
+    """Force that the drive must apply for the given motion, load and temperature, N."""
 
     def of(effect: str, key: str) -> float:
         return hidden.get(effect, {}).get(key, 0.0)
@@ -221,14 +221,14 @@ def _force(
 
 
 def _peak(hidden: dict[str, dict[str, float]], v: Vector) -> Vector:
-    """Excess of the low-speed friction in positive motion over the mean of both directions, N."""
+    """Difference of low-speed friction in positive motion from the mean of both directions, N."""
     values = hidden.get("stribeck_asymmetry", {"c": 0.0, "v_s": 1.0, "n": 1.0})
     excess: Vector = values["c"] * np.power(math.e, -((np.abs(v) / values["v_s"]) ** values["n"]))
     return excess
 
 
 def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vector:
-    """Dry friction level at each position relative to its mean along the stroke.
+    """Dry friction at each position relative to its mean along the stroke.
 
     The waves over the stroke are Chebyshev polynomials of the cosine of the phase of the first
     wave.
@@ -254,7 +254,10 @@ def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vect
 
 
 def _wave(hidden: dict[str, dict[str, float]], effect: str, path: Vector, ahead: float) -> Vector:
-    """A sine over the pitch, advanced by `ahead` periods; `phase` is a lag."""
+    """Sine over the pitch of an effect, `ahead` periods ahead of the position.
+
+    The `phase` parameter of the effect is a lag.
+    """
     values = hidden.get(effect, {"pitch": 1.0, "phase": 0.0})
     turns = path / values["pitch"] - values["phase"] / (2.0 * math.pi) + ahead
     wave: Vector = np.imag(np.exp(2j * math.pi * turns))

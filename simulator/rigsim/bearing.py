@@ -38,23 +38,23 @@ class Base:
 
     @property
     def load_group(self) -> float:
-        """Fb = C^2 F/(mu U_tr L^3), equation (3.1), dimensionless."""
+        """Load number Fb = C^2 F/(mu U_tr L^3), equation (3.1) of Cohn (1998), dimensionless."""
         b = self.bearing
         return b.clearance_m**2 * self.load_n / (b.viscosity_pa_s * self.U_tr * b.length_m**3)
 
     @property
     def viscous_factor(self) -> float:
-        """gamma (C R/L^2) 2 pi: the constant of the film's shear term in (3.14)."""
+        """Factor gamma (C R/L^2) 2 pi of the shear term in equation (3.14) of Cohn (1998)."""
         b = self.bearing
         return self.gamma * b.clearance_m * b.radius_m / b.length_m**2 * 2.0 * math.pi
 
     @property
     def clock_hz(self) -> float:
-        """Journal clock U_tr/R: film time units per second (1/s)."""
+        """Time scale U_tr/R of the film: dimensionless time per second (1/s)."""
         return self.U_tr / self.bearing.radius_m
 
     def transition_eccentricity(self) -> float:
-        """eps_tr, the root of (3.20) in (0, 1)."""
+        """Transition eccentricity eps_tr, the root of equation (3.20) of Cohn (1998) in (0, 1)."""
         target = 4.0 * self.load_group**2
 
         def excess(eps: float) -> float:

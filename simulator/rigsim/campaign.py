@@ -23,9 +23,10 @@ from .warmth import Kind, draw_warmth, read_by
 
 @dataclass(frozen=True)
 class Campaign:
-    """A named list of motions with one recorded run each.
+    """Named list of motions, each of which is recorded as one run.
 
-    `load_shares` maps the name of a motion to the load of its run as a multiple of the rig's load.
+    `load_shares` contains the load of each run, by the name of its motion, as a multiple of the
+    rig's load.
     """
 
     name: str
@@ -38,7 +39,7 @@ def _one_way(name: str, duration_s: float, omega: float) -> Motion:
 
 
 def standard(name: str) -> Campaign:
-    """Return a standard campaign.
+    """Return a standard campaign by its name.
 
     The names are `full`, `heldout`, `loads`, `one_way`, `short`, `slow` and `steady`.
     """
@@ -105,7 +106,7 @@ def standard(name: str) -> Campaign:
 
 
 def draw_base(seed: int) -> Base:
-    """Draw a random rig around Tables 4.2 to 4.5."""
+    """Draw a random rig with parameters around those of Tables 4.2 to 4.5 of Cohn (1998)."""
     rng = stream(seed, "base")
     return Base(
         f_m=float(rng.uniform(0.20, 0.29)),
@@ -135,14 +136,14 @@ def simulate_campaign(
     temperature: Kind | None = None,
     thermometer: str = "fine",
 ) -> tuple[dict[str, Record], dict[str, Any]]:
-    """Simulate records by run name, and return them with the true values.
+    """Simulate the runs of a campaign, and return their records by name with the true values.
 
     `effects` are names (parameters are drawn at `strength`) or a mapping of names to parameters.
-    `noise` is the white sd as a share of the nominal peak f_m F, drawn from 1 to 2.5 % if None.
-    `coloured` adds a first-order part half as large with a time constant of 0.2 s. Rig, effects and
-    noise level depend on `seed` alone, so two campaigns with one seed describe the same rig. The
-    temperature changes, and is recorded, if an effect requires it or if `temperature` gives its
-    course.
+    `noise` is the standard deviation of white noise relative to the nominal peak f_m F, drawn from
+    1 to 2.5 % if None. `coloured` adds noise of first order, half as large, with a time constant of
+    0.2 s. Rig, effects and noise level depend on `seed` alone, so two campaigns with one seed
+    describe the same rig. The temperature varies, and is recorded, if an effect requires this, or
+    as specified by `temperature`.
     """
     plan = standard(campaign) if isinstance(campaign, str) else campaign
     base = draw_base(seed)
@@ -198,7 +199,7 @@ def simulate_campaign(
 
 
 def rig_toml(bearing: Bearing, load_n: float) -> str:
-    """Contents of `rig.toml` in the format of the contract."""
+    """Return the contents of `rig.toml` for a bearing and a load (N)."""
     return (
         f"[bearing]\nradius_m = {bearing.radius_m}\nlength_m = {bearing.length_m}\n"
         f"clearance_m = {bearing.clearance_m}\nmass_kg = {bearing.mass_kg}\n"
@@ -217,7 +218,10 @@ def write_campaign(
     campaign: str | Campaign = "full",
     foreign: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Simulate as `simulate_campaign`, write rig.toml and one CSV per run; return the truth."""
+    """Simulate a campaign, write rig.toml and one CSV per run, and return the true values.
+
+    The arguments are those of `simulate_campaign`.
+    """
     records, truth = simulate_campaign(seed, effects, strength, noise, coloured, campaign, foreign)
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The effects by name: parameters, null values, and random draws of typical size.
+"""Catalogue of the simulated effects: parameters, null values, and random draws of typical size.
 
 A `Spread` defines the range of a parameter at strength 1 and the power of the strength by which it
 scales. At strength 1 the RMS of an effect is of the order of the noise, or up to a few times that,
@@ -17,7 +17,10 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Spread:
-    """Range of one parameter, log-uniform if positive and uniform from 0, and its scaling power."""
+    """Range of one parameter, with the power of the strength by which it scales.
+
+    The distribution is log-uniform for a positive range, and uniform for one that starts at 0.
+    """
 
     low: float
     high: float
@@ -26,7 +29,7 @@ class Spread:
     signed: bool = False
 
     def draw(self, rng: np.random.Generator, strength: float) -> float:
-        """Draw a value at `strength`, with either sign if `signed`."""
+        """Draw a value of the parameter at `strength`, with a random sign if `signed`."""
         if self.low > 0.0:
             value = float(np.exp(rng.uniform(math.log(self.low), math.log(self.high))))
         else:
@@ -81,7 +84,7 @@ CATALOGUE: dict[str, dict[str, Spread]] = {
 }
 
 BY_THERMOMETER = ("vogel_viscosity",)
-"""Effects that can be observed only if the temperature changes, which is then recorded."""
+"""Effects that can be observed only if the temperature varies, which is then recorded."""
 
 NULLS: dict[str, dict[str, float]] = {
     "drive_compliance": {"k": math.inf},
@@ -115,7 +118,7 @@ NULLS: dict[str, dict[str, float]] = {
 
 
 def draw(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str, float]:
-    """Draw random parameters of effect `name` at `strength` (1 standard; 0.6 to 1.5 sensible)."""
+    """Draw random parameters of the effect `name` at `strength` (usual values: 0.6 to 1.5)."""
     if name not in CATALOGUE:
         raise ValueError(f"no effect named {name!r}; there are {', '.join(CATALOGUE)}")
     values = {key: spread.draw(rng, strength) for key, spread in CATALOGUE[name].items()}
@@ -126,7 +129,7 @@ def draw(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str
 
 
 def check(effects: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
-    """Return `effects` without those at their null; raise for an unknown name or parameter."""
+    """Return `effects` without those at their null value; raise for an unknown name."""
     active = {}
     for name, values in effects.items():
         if name not in CATALOGUE:

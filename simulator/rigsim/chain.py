@@ -1,4 +1,4 @@
-"""Signal chain of one run, for either kind of drive: state layout, rates and friction."""
+"""Signal chain of one run, for a rigid or a compliant drive: state, rates and friction."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from .warmth import Warmth
 
 
 class Chain:
-    """Lubricant, film, contact, other friction and sensor lag of one rig.
+    """Signal chain of one rig: lubricant, film, contact, other friction and sensor lag.
 
-    The state holds eps and phi. If their effects are active, heat beta T (-), bristle deflection
-    (m), lagged friction (N) and the time (s) that the temperature requires follow, in that order.
+    The state contains eps and phi. If the corresponding effects are active, heat beta T (-),
+    bristle deflection (m), lagged friction (N) and the time (s) for the temperature follow, in this
+    order.
     """
 
     def __init__(
@@ -48,15 +49,15 @@ class Chain:
 
     @property
     def bristled(self) -> bool:
-        """Whether the contact is a bristle, so that friction at rest is a state."""
+        """True if the contact has a bristle, so that friction at rest is a state."""
         return self.bristle_at >= 0
 
     def start(self, v: float, acceleration: float, path: Path) -> list[float]:
-        """State at the start of a run that begins at surface speed `v` (m/s).
+        """Return the state at the start of a run that begins at the surface speed `v` (m/s).
 
         The film is cold and at the transition, or at `film_start` (eps, phi). A run that begins at
         rest has a relaxed bristle; one that begins in motion has a fully deflected bristle. The
-        lagged cell has settled.
+        reading of a load cell with lag equals the force.
         """
         y = [*(self.film_start or self.film.start()), *([0.0] * (self.size - 2))]
         sign = (v > 0.0) - (v < 0.0)
@@ -73,14 +74,18 @@ class Chain:
         return self.lubricant.film_speed(speed, heat, time_s)
 
     def unsigned(self, y: Sequence[float], v: float, sign: int, path: Path) -> float:
-        """Sliding friction coefficient of the contact (-), without its sign."""
+        """Sliding friction coefficient of the contact, without its sign (-)."""
         speed = abs(v)
         return self.contact.coefficient(y[0], self._film_speed(y, speed), speed, sign, path)
 
     def bearing(
         self, y: Sequence[float], v: float, sign: int, path: Path, held_n: float | None = None
     ) -> float:
-        """Bearing friction (N): of the bristle, else `held_n` of a stuck journal, else sliding."""
+        """Friction force of a bearing (N).
+
+        The force is that of the bristle if there is one, `held_n` if the journal sticks, and
+        otherwise that of sliding.
+        """
         if self.bristle_at >= 0:
             return self.load_n * self.contact.sigma * y[self.bristle_at]
         if held_n is not None:
@@ -98,7 +103,7 @@ class Chain:
         path: Path,
         held_n: float | None = None,
     ) -> float:
-        """Force (N) reported by the load cell, with lag but without offset and drift."""
+        """Reading of the load cell (N), with lag but without offset and drift."""
         if self.lag_at >= 0:
             return y[self.lag_at]
         return self.bearing(y, v, sign, path, held_n) + self.other.force(v, sign, acceleration)
@@ -112,7 +117,7 @@ class Chain:
         path: Path,
         held_n: float | None = None,
     ) -> list[float]:
-        """Time derivatives (per s) of the state at surface speed `v` (m/s)."""
+        """Time derivatives (1/s) of the state at the surface speed `v` (m/s)."""
         speed = abs(v)
         ub = self._film_speed(y, speed)
         out = list(self.film.rates(y[0], y[1], ub))

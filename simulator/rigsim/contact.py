@@ -1,8 +1,8 @@
-"""Effects in the contact: contributions of asperities and bristles to the film's friction.
+"""Effects in the contact, which change the friction of asperities and film.
 
-Order: running-in scales f_m; film friction is added; then Kato's dwell term and the Stribeck
-excess; then direction asymmetry and position ripple multiply that sum. The bristle of `presliding`,
-when present, tends to this unsigned coefficient.
+They act in this order: running-in scales f_m; film friction is added; then Kato's dwell term and
+the Stribeck excess; then direction asymmetry and position ripple multiply the sum. The bristle of
+`presliding`, if present, deflects towards this unsigned coefficient.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .lubricant import Parameters
 
 @dataclass
 class Path:
-    """History of the motion on which the contact depends, at one instant."""
+    """History of the motion at one instant, as far as the contact depends on it."""
 
     slid_m: float = 0.0  # distance slid in the run
     since_rest_m: float = 0.0  # distance slid since the last rest
@@ -25,7 +25,7 @@ class Path:
 
 
 class Contact:
-    """Unsigned friction coefficient of the contact."""
+    """Friction coefficient of the contact with its effects."""
 
     def __init__(self, effects: Parameters, film: Film, f_m: float) -> None:
         self.film = film
@@ -38,7 +38,7 @@ class Contact:
         self.sigma = effects.get("presliding", {}).get("sigma", 0.0)
 
     def coefficient(self, eps: float, ub: float, speed: float, sign: int, path: Path) -> float:
-        """Unsigned coefficient (-) at film speed `ub` (-), surface speed |v| (m/s)."""
+        """Return the unsigned coefficient (-) at film speed `ub` (-) and speed |v| (m/s)."""
         f_m = self.f_m
         if self.wear is not None:
             f_m *= 1.0 + self.wear["a"] * math.exp(-path.slid_m / self.wear["s_0"])
@@ -60,7 +60,7 @@ class Contact:
         return p["a"] * strength * math.exp(-path.since_rest_m / p["s_0"])
 
     def bristle_rate(self, z: float, v: float, unsigned: float) -> float:
-        """dz/dt (m/s) of the bristle of deflection `z` (m) at surface speed `v` (m/s)."""
+        """Time derivative (m/s) of the bristle deflection `z` (m) at surface speed `v` (m/s)."""
         if v == 0.0 or unsigned <= 0.0:
             return v
         return v - abs(v) * self.sigma * z / unsigned

@@ -1,7 +1,8 @@
 """Rigs of other designs, with geometry, oil, load and friction drawn from realistic ranges.
 
-The effects of the catalogue are sized for the standard rig. Here they are scaled to the rig, so
-that a strength of 1 is the same share of the friction on a light rig as on a heavy one.
+The effects of the catalogue are sized for the standard rig. In this module they are scaled to the
+rig, so that an effect of strength 1 has the same ratio to the friction on a light rig as on a heavy
+one.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ PUSHES_N = {
 
 @dataclass(frozen=True)
 class Design:
-    """A rig, its logger, and matching speeds (m/s) and noise (N)."""
+    """Random rig with its logger, and matching speeds (m/s) and noise (N)."""
 
     base: Base
     rate_hz: float
@@ -63,7 +64,7 @@ def _base(rng: Rng) -> Base:
 
 
 def _turns(base: Base) -> bool:
-    """Whether the film of a drawn rig carries the load at speed and touches at rest."""
+    """Return True if the film of a rig carries the load at speed and not at rest."""
     if not 80.0 < base.load_group < 1500.0:
         return False
     touching = base.transition_eccentricity() + math.sqrt(base.load_group / base.K0)
@@ -71,7 +72,7 @@ def _turns(base: Base) -> bool:
 
 
 def draw_design(seed: int) -> Design:
-    """Draw the rig of a seed."""
+    """Draw the rig and logger of a seed."""
     rng = stream(seed, "design")
     base = _base(rng)
     while not _turns(base):
@@ -86,7 +87,7 @@ def draw_design(seed: int) -> Design:
 
 
 def _heat_w(base: Base) -> float:
-    """Approximate friction power of a bearing in a run at 1.5 U_tr (W)."""
+    """Approximate friction power of a bearing at a speed of 1.5 U_tr (W)."""
     shear = Film.of(base).shear(base.transition_eccentricity(), 1.5)
     return base.load_n * base.U_tr * (0.05 * base.f_m + shear)
 
@@ -115,7 +116,7 @@ def draw_effects(
 
 
 def draw_film_start(base: Base, speed_m_s: float, rng: Rng) -> tuple[float, float]:
-    """Draw the film state (eps, phi) of a run that begins at a speed at which it has not settled.
+    """Draw the film state (eps, phi) of a run that begins in motion, before the film has settled.
 
     The state is that of another steady speed, up to three times slower or faster, or that of the
     transition. In a run that begins at rest the shaft is on its asperities or still approaching

@@ -1,8 +1,8 @@
-"""Runs with a compliant drive: the journal is driven by a torsion spring and sticks or slips.
+"""Runs with a compliant drive: a torsion spring moves the journal, which sticks or slides.
 
-Stick and slip phases are integrated one after another and located by events. The load cell reports
-the twist torque of the drive for a stuck journal and the friction for a sliding one. With a bristle
-contact there is no set-valued friction, so the journal is integrated in one phase.
+Phases of sticking and sliding are integrated one after another; events end a phase. The load cell
+reports the torque of the spring while the journal sticks, and the friction while it slides. With a
+bristle, friction is not set-valued, and there is only one phase.
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ NUDGE = 1e-9  # rad/s given to a journal that breaks away
 
 
 class CompliantDrive:
-    """One run of a chain behind a spring k (N m/rad), damper c (N m s/rad), inertia J (kg m^2)."""
+    """Simulation of one run with a drive of stiffness k, damping c and inertia J.
+
+    The units are N m/rad, N m s/rad and kg m^2. `chain` computes the friction of the journal.
+    """
 
     def __init__(
         self,
@@ -42,10 +45,11 @@ class CompliantDrive:
         self.n = chain.size
 
     def run(self, motion: Motion, times: Vector, *, under_way: bool = False) -> Vector:
-        """Load cell force (N), before offset and drift, at `times` (s).
+        """Simulate the run and return the force on the load cell (N), before offset and drift.
 
-        The drive begins without twist or, if `under_way`, with the twist due to its initial
-        friction.
+        `times` are the instants, s.
+
+        The spring is relaxed at the start or, if `under_way`, deflected by the initial friction.
         """
         force = np.zeros(len(times))
         first = motion.pieces[0]

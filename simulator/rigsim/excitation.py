@@ -1,4 +1,4 @@
-"""Realistic motions: drawn rates, phases, stops and rests, without alignment to a sampling grid.
+"""Realistic motions with random rates, phases, stops and rests, not aligned to a sampling grid.
 
 A motion is slightly longer than its record at both ends, because a delayed or leading channel
 samples beyond the record.
@@ -23,10 +23,10 @@ Knots = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Plan:
-    """A run: `length_s` of `motion` from `begins_s` on, recorded under a share of the load.
+    """Planned run: `length_s` of `motion` from `begins_s` on, under a multiple of the rig's load.
 
     A run that begins before its motion (below 0 s) starts at rest, as the motion does. Other runs
-    start during the motion, with a film of unknown history.
+    start during the motion, with an unknown state of the film.
     """
 
     motion: Motion
@@ -36,14 +36,14 @@ class Plan:
 
 
 def _length(omega: float, rng: Rng) -> float:
-    """Draw a length of two to four periods, limited to a reasonable range (s)."""
+    """Draw the length of a run, two to four periods within limits (s)."""
     period = 2.0 * math.pi / omega
     usual = min(max(rng.uniform(2.0, 4.0) * period, 18.0), max(60.0, 1.1 * period))
     return float(usual * rng.uniform(0.95, 1.1))
 
 
 def _phase(rng: Rng) -> float:
-    """Draw a phase anywhere in the motion; one run in four begins at rest."""
+    """Draw the start of a run: any phase of the motion, or at rest in one of four runs."""
     return 0.0 if rng.random() < 0.25 else float(rng.uniform(0.0, 2.0 * math.pi))
 
 
@@ -76,7 +76,7 @@ def triangle(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def _between(knots: Knots, start: float, end: float) -> Knots:
-    """Cut a polyline to a time interval."""
+    """Cut a speed given by points (s, m/s) to a time interval."""
 
     def at(t: float) -> float:
         for (t0, v0), (t1, v1) in pairwise(knots):
@@ -153,8 +153,10 @@ def _named(makers: list[tuple[str, Maker, float]], top: float, rng: Rng) -> list
 
 
 def campaign(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
-    """Draw three to seven runs: a slow sine, a fast sine and stops, which any effect needs, and
-    others. `load_dependence` gets three loads; a few of the other campaigns also have several.
+    """Draw the three to seven runs of a campaign.
+
+    They include a slow sine, a fast sine and stops, which any effect needs. With `load_dependence`
+    there are three loads; some other campaigns also have several.
     """
     rng = stream(seed, "excitation")
     makers: list[tuple[str, Maker, float]] = [
@@ -173,9 +175,10 @@ def campaign(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
 
 
 def held_out(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
-    """Draw other motions for the same rig, one under an intermediate load for `load_dependence`.
+    """Draw runs with other motions of the same rig, for held-out errors.
 
-    All begin at rest, between two samples: no model of the rig can predict an earlier history.
+    One of them has an intermediate load if `effects` contains `load_dependence`. All begin at rest,
+    between two samples, because a model cannot predict an unknown initial state.
     """
     rng = stream(seed, "held out")
     makers: list[tuple[str, Maker, float]] = [

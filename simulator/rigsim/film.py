@@ -1,4 +1,4 @@
-"""The lubricating film: reduced model (3.18, 3.19) in eccentricity and attitude angle."""
+"""Lubricating film: model without inertia, (3.18) and (3.19) of Cohn (1998), in eps and phi."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ START_PHI = 0.15
 
 @dataclass(frozen=True)
 class Film:
-    """Film constants of one base law; rates are per second."""
+    """Constants of the film equations of one rig; rates are per second."""
 
     load_group: float
     eps_tr: float
@@ -23,7 +23,7 @@ class Film:
 
     @classmethod
     def of(cls, base: Base, clock_factor: float = 1.0) -> Film:
-        """Film of `base` with its clock multiplied by `clock_factor` (-)."""
+        """Create the film of `base` with its rate multiplied by `clock_factor` (-)."""
         return cls(
             load_group=base.load_group,
             eps_tr=base.transition_eccentricity(),
@@ -33,16 +33,16 @@ class Film:
         )
 
     def start(self) -> tuple[float, float]:
-        """State (eps, phi) at the start of every run."""
+        """Return the state (eps, phi) at the start of a run."""
         return self.eps_tr, START_PHI
 
     def asperity_load(self, eps: float) -> float:
-        """W = K0 (eps - eps_tr)^2 above the transition, else 0 (-)."""
+        """Asperity load W = K0 (eps - eps_tr)^2 above the transition, otherwise 0 (-)."""
         gap = eps - self.eps_tr
         return self.stiffness * gap * gap if gap > 0.0 else 0.0
 
     def rates(self, eps: float, phi: float, ub: float) -> tuple[float, float]:
-        """(d eps/dt, d phi/dt) in 1/s and rad/s at dimensionless speed |Ub| = `ub`."""
+        """Time derivatives of eps (1/s) and phi (rad/s) at the dimensionless speed |Ub| = `ub`."""
         d = 1.0 - eps * eps
         root = math.sqrt(d)
         j11 = HALF_PI / (d * root)
@@ -56,5 +56,5 @@ class Film:
         return eps_dot * self.clock_hz, phi_dot * self.clock_hz
 
     def shear(self, eps: float, ub: float) -> float:
-        """Viscous part of the friction coefficient at |Ub| = `ub` (-)."""
+        """Viscous part of the friction coefficient at the dimensionless speed |Ub| = `ub` (-)."""
         return self.viscous * ub / math.sqrt(1.0 - eps * eps) / self.load_group

@@ -1,7 +1,7 @@
 """Effects that are in no catalogue, to test whether a diagnosis reports "unexplained".
 
-Each is drawn once per campaign and changes the noise-free record of every run. `apply` takes time
-(s), angle (rad), speed (m/s) and force (N) of the record and returns the changed force.
+The parameters of an effect are drawn once per campaign. `apply` takes time (s), angle (rad), speed
+(m/s) and force (N) of a record without noise, and returns the changed force.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ Rng = np.random.Generator
 
 
 class Foreign(Protocol):
-    """Interface of every foreign effect."""
+    """Interface of an effect that is in no catalogue."""
 
     name: ClassVar[str]
 
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
-        """Return the force (N) with the effect added; `rng` is the generator of the run."""
+        """Return the force (N) with the effect; `rng` is the random number generator of the run."""
 
 
 @dataclass(frozen=True)
 class Hum:
-    """A tone of fixed frequency with a different phase in each run."""
+    """Force with one frequency and a different phase in each run."""
 
     name: ClassVar[str] = "hum"
     amplitude_n: float
@@ -45,7 +45,7 @@ class Hum:
 
 @dataclass(frozen=True)
 class Cogging:
-    """Motor cross-talk at a higher harmonic of the angle, added to friction."""
+    """Cross-talk of the motor: a force at a high harmonic of the angle."""
 
     name: ClassVar[str] = "cogging"
     amplitude_n: float
@@ -63,7 +63,7 @@ class Cogging:
 
 @dataclass(frozen=True)
 class LevelStep:
-    """A relative change of the friction at one instant of every run."""
+    """Relative change of the friction at one instant of every run."""
 
     name: ClassVar[str] = "level_step"
     share: float
@@ -81,7 +81,7 @@ class LevelStep:
 
 @dataclass(frozen=True)
 class Bursts:
-    """Decaying spikes at random instants, with either sign."""
+    """Decaying spikes of the force at random instants, with either sign."""
 
     name: ClassVar[str] = "bursts"
     height_n: float
@@ -104,7 +104,10 @@ class Bursts:
 
 @dataclass(frozen=True)
 class Chatter:
-    """Squeal of a slide: a tone below a speed limit, with a different phase in each run."""
+    """Squeal of a slide: a force with one frequency below a speed limit.
+
+    The phase differs between runs.
+    """
 
     name: ClassVar[str] = "chatter"
     amplitude_n: float
@@ -125,7 +128,7 @@ class Chatter:
 
 @dataclass(frozen=True)
 class Scratch:
-    """A groove or a burr: additional friction at one or two narrow positions of a turn."""
+    """Groove or burr: additional friction at one or two narrow ranges of the angle."""
 
     name: ClassVar[str] = "scratch"
     height_n: float
@@ -150,7 +153,7 @@ class Scratch:
 
 @dataclass(frozen=True)
 class StrokeScatter:
-    """Strokes that differ: the friction level is drawn anew for each stroke between reversals."""
+    """Friction level that varies at random from stroke to stroke."""
 
     name: ClassVar[str] = "stroke_scatter"
     share: float
@@ -173,7 +176,7 @@ FOREIGN = {f.name: f for f in (Hum, Cogging, LevelStep, Bursts, Chatter, Scratch
 
 
 def draw_foreign(name: str, rng: Rng, strength: float = 1.0) -> Foreign:
-    """Draw a foreign effect of random size; RMS one to three times the noise at strength 1."""
+    """Draw a foreign effect of random size: RMS one to three times the noise at strength 1."""
     if name not in FOREIGN:
         raise ValueError(f"no foreign effect named {name!r}; there are {', '.join(FOREIGN)}")
     foreign: Foreign = FOREIGN[name].draw(rng, strength)
@@ -181,5 +184,5 @@ def draw_foreign(name: str, rng: Rng, strength: float = 1.0) -> Foreign:
 
 
 def parameters(foreign: Foreign) -> dict[str, float]:
-    """Return the drawn values for the truth file."""
+    """Return the drawn parameters of a foreign effect for the file of the true values."""
     return {key: float(value) for key, value in asdict(foreign).items()}  # type: ignore[call-overload]

@@ -1,4 +1,4 @@
-"""The load cell: nonlinearity and play before its filter, zero offset and drift after it.
+"""Load cell: nonlinearity and play before its filter, zero offset and drift after it.
 
 The filter of a linear cell is a state of the chain. Play in the force path depends on the history
 of the force. With play or a nonlinear characteristic, the force is therefore computed on a grid
@@ -13,23 +13,23 @@ from .lubricant import Parameters
 from .record import Vector
 
 BENT = ("sensor_hysteresis", "sensor_nonlinearity")
-"""Effects on the force before the filter."""
+"""Effects on the force before the filter of the load cell."""
 FILTERS = ("sensor_lag", "time_delay")
 FINER = 5
-"""Instants of the finer grid per sample."""
+"""Number of instants of the finer grid per sample."""
 BESIDE_S = 1e-6
-"""Distance of the grid points on either side of an instant at which the force may jump, s."""
+"""Distance of additional grid points before and after an instant at which the force may jump, s."""
 
 
 def read_out(force: Vector, times: Vector, effects: Parameters) -> Vector:
-    """Force (N) with `sensor_offset` and `sensor_drift` added; time since run start (s)."""
+    """Return the force (N) with `sensor_offset` and `sensor_drift`, at times from run start (s)."""
     offset = effects.get("sensor_offset", {}).get("b", 0.0)
     drift = effects.get("sensor_drift", {}).get("d", 0.0)
     return force + offset + drift * times
 
 
 def finer(times: Vector, jumps: Vector) -> Vector:
-    """Instants of the finer grid (s): those of `times`, between them, and next to jumps."""
+    """Return the instants of the finer grid (s), including those next to jumps."""
     where = np.arange(FINER * (len(times) - 1) + 1) / FINER
     between = np.interp(where, np.arange(len(times)), times)
     instants = np.concatenate([between, times, jumps - BESIDE_S, jumps + BESIDE_S])
@@ -37,7 +37,7 @@ def finer(times: Vector, jumps: Vector) -> Vector:
 
 
 def through_cell(force: Vector, effects: Parameters) -> Vector:
-    """Force (N) in the cell, without the part held back by play and with its nonlinearity."""
+    """Return the force (N) in the load cell, after play in the force path and nonlinearity."""
     play = effects.get("sensor_hysteresis", {}).get("w", 0.0)
     cubic = effects.get("sensor_nonlinearity", {}).get("c", 0.0)
     seen = force - _kept_back(force, play) if play > 0.0 else force
@@ -48,7 +48,10 @@ def through_cell(force: Vector, effects: Parameters) -> Vector:
 
 
 def _kept_back(force: Vector, play: float) -> Vector:
-    """Part of a force (N) borne by a spring and a slider that slips at `play`, relaxed at first."""
+    """Part of a force (N) that a spring with a slider carries, which slips at `play` (N).
+
+    The spring is relaxed at first.
+    """
     borne, out = 0.0, np.zeros(len(force))
     for i, more in enumerate(np.diff(force).tolist(), start=1):
         borne = float(np.clip(borne + more, -play, play))
@@ -57,7 +60,10 @@ def _kept_back(force: Vector, play: float) -> Vector:
 
 
 def filtered(force: Vector, times: Vector, effects: Parameters) -> Vector:
-    """Force (N) after filter and delay, settled at first; linear between the instants."""
+    """Return the force (N) after filter and delay; it is linear between the instants.
+
+    The filter starts in its steady state.
+    """
     tau = effects.get("sensor_lag", {}).get("tau", 0.0)
     if tau > 0.0:
         shown, out = float(force[0]), [float(force[0])]

@@ -1,4 +1,4 @@
-"""Effects on the lubricant: the effective speed that acts on the film."""
+"""Effects on the lubricant, which change the effective speed of the film."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Parameters = dict[str, dict[str, float]]
 
 
 class Lubricant:
-    """Effective film speed under `thermal_thinning`, `shear_thinning` and `vogel_viscosity`.
+    """Effective speed of the film with `thermal_thinning`, `shear_thinning` and `vogel_viscosity`.
 
     The heat is stored as h = beta T (-), so that only beta q (1/J) and tau (s) matter.
     """
@@ -30,7 +30,7 @@ class Lubricant:
         self._scale = 1.0 / transition_speed
 
     def film_speed(self, speed: float, heat: float, time_s: float = 0.0) -> float:
-        """|Ub| (-) at surface speed |U| (m/s), heat beta T (-) and time (s)."""
+        """Return the film speed |Ub| (-) at speed |U| (m/s), heat beta T (-) and time (s)."""
         if speed <= 0.0:
             return 0.0
         ub = speed * self._scale
@@ -48,5 +48,5 @@ class Lubricant:
         return thinner(self.b_k, self.warmth.at(time_s))
 
     def heat_rate(self, power_w: float, heat: float) -> float:
-        """d(beta T)/dt (1/s) at friction power `power_w` (W) of one bearing."""
+        """Time derivative of the heat beta T (1/s) at a friction power of one bearing (W)."""
         return self.heating * power_w - self.cooling * heat

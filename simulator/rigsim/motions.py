@@ -15,7 +15,10 @@ Curve = Callable[[float], float]
 
 @dataclass(frozen=True)
 class Piece:
-    """Motion from `t0` to `t1` (s): surface speed, position, acceleration (SI), sign of speed."""
+    """Piece of a motion from `t0` to `t1` (s), with a smooth speed of one sign.
+
+    It returns surface speed, position and acceleration (SI units).
+    """
 
     t0: float
     t1: float
@@ -27,7 +30,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Motion:
-    """A commanded surface motion of the journal, start to `duration_s`."""
+    """Commanded surface motion of the journal, from 0 to `duration_s`."""
 
     name: str
     duration_s: float
@@ -51,7 +54,10 @@ def _cut(
 def multisine(
     name: str, duration_s: float, tones: Sequence[tuple[float, float, float]], bias: float = 0.0
 ) -> Motion:
-    """Speed `bias + sum A sin(w t + p)`; tones are (A m/s, w rad/s, p rad)."""
+    """Create a motion with the speed `bias + sum A sin(w t + p)`.
+
+    `tones` are (A m/s, w rad/s, p rad).
+    """
     start = sum(-a / w * math.cos(p) for a, w, p in tones)
 
     def speed(t: float) -> float:
@@ -76,7 +82,7 @@ def multisine(
 
 
 def sine(name: str, duration_s: float, amplitude: float, omega: float, bias: float = 0.0) -> Motion:
-    """Speed `bias + amplitude sin(omega t)` (m/s, rad/s)."""
+    """Create a motion with the speed `bias + amplitude sin(omega t)` (m/s, rad/s)."""
 
     def speed(t: float) -> float:
         return bias + amplitude * math.sin(omega * t)
@@ -113,7 +119,10 @@ def _ramp(t0: float, v0: float, v1: float, t1: float, x0: float) -> tuple[Curve,
 
 
 def polyline(name: str, knots: Sequence[tuple[float, float]]) -> Motion:
-    """Speed linear between `knots` (t s, v m/s); equal zero knots make a rest."""
+    """Create a motion whose speed is linear between `knots` (time s, speed m/s).
+
+    Two adjacent knots with zero speed define a rest.
+    """
     pieces: list[Piece] = []
     x = 0.0
     for (t0, v0), (t1, v1) in pairwise(knots):
@@ -127,7 +136,10 @@ def polyline(name: str, knots: Sequence[tuple[float, float]]) -> Motion:
 
 
 def triangle(name: str, duration_s: float, amplitude: float, omega: float) -> Motion:
-    """Triangular speed, zero at the start, with peak `amplitude` (m/s) and period 2 pi/omega."""
+    """Create a motion with a triangular speed that starts at zero.
+
+    Its peak is `amplitude` (m/s), and its period 2 pi/omega.
+    """
     quarter = 0.5 * math.pi / omega
     heights = (0.0, amplitude, 0.0, -amplitude)
     knots = [(0.0, 0.0)]
@@ -147,7 +159,10 @@ def stop_and_go(
     plateau_s: float,
     duration_s: float,
 ) -> Motion:
-    """Trapezoids of height `top` (m/s) at the given (start s, direction +-1), rests between."""
+    """Create a motion of trapezoidal moves with the speed `top` (m/s) and rests between them.
+
+    `moves` contains start (s) and direction (+1 or -1) of each move.
+    """
     knots = [(0.0, 0.0)]
     for start, direction in moves:
         if start > knots[-1][0]:
@@ -161,7 +176,10 @@ def stop_and_go(
 
 
 def steps(name: str, speeds: Sequence[float], hold_s: float, ramp_s: float = 0.5) -> Motion:
-    """Constant speeds (m/s) held `hold_s` each, joined by ramps, from rest and back to rest."""
+    """Create a motion of constant speeds (m/s) for `hold_s` each, joined by ramps.
+
+    The motion begins and ends at rest.
+    """
     knots = [(0.0, 0.0)]
     for v in speeds:
         knots.append((knots[-1][0] + ramp_s, v))
@@ -171,5 +189,5 @@ def steps(name: str, speeds: Sequence[float], hold_s: float, ramp_s: float = 0.5
 
 
 def sweep(name: str, top: float, rise_s: float) -> Motion:
-    """A slow sweep from rest to `top` (m/s) in `rise_s` and back: a Stribeck run."""
+    """Create a slow sweep from rest to `top` (m/s) in `rise_s` and back, for a Stribeck curve."""
     return polyline(name, [(0.0, 0.0), (rise_s, top), (2.0 * rise_s, 0.0)])

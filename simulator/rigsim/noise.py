@@ -12,14 +12,14 @@ from .record import Vector
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise levels.
+    """Noise levels of the sensors of a rig.
 
     Attributes
     ----------
     friction_n
         Standard deviation of the white part of the friction noise, N.
     coloured_share
-        Standard deviation of its first-order coloured part, as a share of the white part.
+        Standard deviation of the first-order coloured part, relative to the white part.
     correlation_s
         Time constant of the coloured part, s.
     velocity_m_s
@@ -35,7 +35,7 @@ class Noise:
     counts_per_rad: float = 2387.3
 
     def friction(self, clean: Vector, step_s: float, rng: np.random.Generator) -> Vector:
-        """Return `clean` (N), sampled every `step_s`, with white and coloured noise added."""
+        """Return `clean` (N), sampled every `step_s`, with white and coloured noise."""
         noisy = clean + self.friction_n * rng.standard_normal(len(clean))
         if self.coloured_share > 0.0:
             keep = math.exp(-step_s / self.correlation_s)
@@ -49,9 +49,9 @@ class Noise:
         return noisy
 
     def velocity(self, true: Vector, rng: np.random.Generator) -> Vector:
-        """Measured speed (m/s)."""
+        """Return the speed (m/s) with noise."""
         return np.where(true == 0.0, 0.0, true + self.velocity_m_s * rng.standard_normal(len(true)))
 
     def angle(self, true: Vector) -> Vector:
-        """Angle (rad) rounded to whole encoder counts."""
+        """Return the angle (rad) rounded to whole encoder counts."""
         return np.round(true * self.counts_per_rad) / self.counts_per_rad

@@ -1,4 +1,4 @@
-"""Friction that does not arise in the bearing but also reaches the load cell."""
+"""Friction that does not arise in the bearing but is measured by the load cell."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from .lubricant import Parameters
 
 
 class OtherFriction:
-    """`coulomb_drag`, `quadratic_drag` and `inertia`, added to the bearing friction."""
+    """Sum of `coulomb_drag`, `quadratic_drag` and `inertia`, added to the bearing friction."""
 
     def __init__(self, effects: Parameters) -> None:
         self.coulomb = effects.get("coulomb_drag", {}).get("F_d", 0.0)
@@ -14,5 +14,5 @@ class OtherFriction:
         self.leak = effects.get("inertia", {}).get("m_e", 0.0)
 
     def force(self, v: float, sign: int, acceleration: float) -> float:
-        """Extra force (N) at surface speed `v` (m/s) and acceleration (m/s^2)."""
+        """Return the additional force (N) at surface speed `v` (m/s) and acceleration (m/s^2)."""
         return self.coulomb * sign + self.quadratic * v * abs(v) + self.leak * acceleration

@@ -13,9 +13,9 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Record:
-    """Samples of one run, in the order and units of the fields; `velocity` in m/s, `friction` in N.
+    """Samples of one run; the fields have the order and units of the CSV file.
 
-    `clean_friction_n` is the friction without noise, N.
+    `velocity` is in m/s and `friction` in N. `clean_friction_n` is the friction without noise, N.
     """
 
     time_s: Vector
@@ -27,7 +27,7 @@ class Record:
     temperature_c: Vector | None = None
 
     def write(self, path: Path) -> None:
-        """Write the run as CSV in the contract's columns (without the clean friction)."""
+        """Write the run as CSV with the columns that jbf reads, without the clean friction."""
         columns = (
             self.time_s,
             self.angle_rad,

@@ -15,7 +15,7 @@ TIGHT = 1e-9  # s; instants closer than this are treated as one
 
 
 class _Trip:
-    """Distance slid, rests and angle of the journal, accumulated over the pieces of a motion."""
+    """Sliding distance, rests and angle of the journal, accumulated over the pieces of a motion."""
 
     def __init__(self, radius_m: float, start_angle: float) -> None:
         self.radius_m = radius_m
@@ -24,7 +24,7 @@ class _Trip:
         self.rest_from: float | None = None
 
     def at(self, piece: Piece, t: float) -> Path:
-        """Path at time `t` (s), within `piece`."""
+        """Return the history of the motion at time `t` (s), within `piece`."""
         x = piece.position(t)
         moved = abs(x - piece.position(piece.t0))
         done = self.done
@@ -33,7 +33,7 @@ class _Trip:
         return Path(done.slid_m + moved, done.since_rest_m + moved, dwell, angle)
 
     def enter(self, piece: Piece) -> None:
-        """Begin `piece`: a rest starts the dwell clock, the following motion stops it."""
+        """Begin `piece`: a rest starts the dwell time, and the next motion ends it."""
         if piece.sign == 0:
             if self.rest_from is None:
                 self.rest_from = piece.t0
@@ -44,14 +44,17 @@ class _Trip:
             self.rest_from = None
 
     def leave(self, piece: Piece) -> None:
-        """End `piece`: add its path to the accumulated one."""
+        """End `piece`: add its distance and its duration to the accumulated ones."""
         self.done = self.at(piece, piece.t1)
 
 
 def run_rigid(
     chain: Chain, motion: Motion, times: NDArray[np.float64], radius_m: float, start_angle: float
 ) -> NDArray[np.float64]:
-    """Load cell force (N), before offset and drift, at `times` (s)."""
+    """Simulate a run; return the force on the load cell (N) at `times` (s).
+
+    Offset and drift are not included.
+    """
     force = np.zeros(len(times))
     first = motion.pieces[0]
     v, a = first.speed(0.0), first.acceleration(0.0)

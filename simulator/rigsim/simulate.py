@@ -1,4 +1,4 @@
-"""One run, from the commanded motion to the recorded samples."""
+"""Simulation of one run, from the commanded motion to the recorded samples."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .warmth import Warmth
 
 
 def commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
-    """Surface speed (m/s) and position (m) of a motion at `times` (s)."""
+    """Return surface speed (m/s) and position (m) of a motion at `times` (s)."""
     speed, position = np.empty(len(times)), np.empty(len(times))
     ends = np.array([p.t1 for p in motion.pieces[:-1]])
     for i, k in enumerate(np.searchsorted(ends, times, side="right").tolist()):
@@ -34,7 +34,7 @@ def commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
 
 
 def under_load(base: Base, load_n: float, effects: Parameters) -> Base:
-    """Return the rig `base` under another load; `load_dependence` also changes its parameters."""
+    """Return the rig `base` under another load (N), with the parameters that depend on the load."""
     p = effects.get("load_dependence", {"p": 0.0, "q": 0.0})
     share = load_n / base.load_n
     return replace(
@@ -51,10 +51,9 @@ def cell_force(
     film_start: tuple[float, float] | None = None,
     warmth: Warmth | None = None,
 ) -> Vector:
-    """Exact force (N) on the load cell, before offset and drift, at `times` (s, ascending).
+    """Return the exact force (N) on the load cell at `times` (s, ascending), without offset, drift.
 
-    With a `film_start` the run begins in motion, so a compliant drive has the twist of its
-    friction.
+    A run with a `film_start` begins in motion, so the spring of a compliant drive is deflected.
     """
     if any(name in effects for name in BENT):
         # Nonlinearity and play act before the filter and the delay.
@@ -90,10 +89,11 @@ def simulate_run(
     rng: np.random.Generator | None = None,
     warmth: Warmth | None = None,
 ) -> Record:
-    """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` effects.
+    """Simulate and record `motion` on the rig `base` with effects of the catalogue and others.
 
-    `load_n` is the load of this run, that of `base` if None. Without `noise` the record is exact;
-    `rng` is needed by noise and some foreign effects. A `warmth` is recorded without noise.
+    `effects` contains the parameters by name, and `foreign` effects that are in no catalogue.
+    `load_n` is the load of this run, or None for that of `base`. Without `noise` the record is
+    exact. Noise and some foreign effects need `rng`. A `warmth` is recorded without noise.
     """
     effects = check(effects)
     rng = rng if rng is not None else np.random.default_rng(0)

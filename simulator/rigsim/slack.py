@@ -1,4 +1,4 @@
-"""`backlash`: motion of a journal behind a gap, divided into pieces.
+"""Backlash: motion of a journal whose drive has a gap, divided into pieces.
 
 The flanks of the drive are `gap_rad` apart. After each reversal the journal rests until the drive
 has crossed the gap. At the first motion of a run the driving flank is in contact.
@@ -12,7 +12,7 @@ from .motions import Motion, Piece
 
 
 def behind_gap(motion: Motion, gap_rad: float, radius_m: float) -> Motion:
-    """Return the motion of the journal behind a drive that makes `motion`."""
+    """Return the motion of the journal for the motion of a drive with a gap."""
     gap = gap_rad * radius_m
     pieces: list[Piece] = []
     place: float | None = None  # m from the flank that drives backward, 0 to gap

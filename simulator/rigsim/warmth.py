@@ -1,4 +1,4 @@
-"""Temperature of the machine: a room that cools and warms, a drive that warms up, several days."""
+"""Temperature of the machine: a room, a drive that warms up, several days."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Vector = npt.NDArray[np.float64]
 Kind = Literal["wandering", "warming", "days"]
 
 REFERENCE_C = 25.0
-"""Temperature at which the parameters of a rig apply, C."""
+"""Temperature for which the parameters of a rig are given, C."""
 OIL_K = 95.0
-"""Temperature below 0 C, in K, at which the viscosity of a mineral oil would diverge."""
+"""Distance below 0 C of the temperature at which the viscosity of a mineral oil diverges, K."""
 
 
 @dataclass(frozen=True)
 class Warmth:
-    """Temperature (C) over the time of one run (s): start, oscillation and exponential rise."""
+    """Temperature of one run as a function of time: start, oscillation and exponential rise, C."""
 
     start_c: float
     swing_k: float = 0.0
@@ -30,12 +30,12 @@ class Warmth:
     tau_s: float = 20.0
 
     def at(self, time_s: float) -> float:
-        """Temperature at a time, C."""
+        """Return the temperature at a time, C."""
         swing = self.swing_k * math.sin(2.0 * math.pi * time_s / self.period_s + self.phase)
         return self.start_c + swing - self.rise_k * math.expm1(-time_s / self.tau_s)
 
     def along(self, times: Vector) -> Vector:
-        """Temperatures at several times (s), C."""
+        """Return the temperatures at several times (s), C."""
         return np.array([self.at(t) for t in times.tolist()])
 
 
@@ -54,7 +54,7 @@ def draw_warmth(kind: Kind, number: int, duration_s: float, rng: np.random.Gener
 
 
 def thinner(b_k: float, temperature_c: float) -> float:
-    """Viscosity relative to the reference, from both distances to the divergence (Vogel)."""
+    """Viscosity relative to that at the reference temperature, by the equation of Vogel."""
     actual, reference = temperature_c + OIL_K, REFERENCE_C + OIL_K
     return float(10.0 ** (b_k / math.log(10.0) * (reference - actual) / (actual * reference)))
 

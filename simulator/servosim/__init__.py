@@ -1,7 +1,7 @@
 """Simulated servo drives with closed-loop motions, and loggers that record them.
 
-Shares no code with the models of `jbf`. The drive is integrated exactly between the instants of its
-controller; sticking and sliding of Coulomb friction are resolved as events.
+The package shares no code with the models of `jbf`. A drive is integrated exactly between the
+instants of its controller; sticking and sliding of Coulomb friction are resolved as events.
 """
 
 from servosim.campaign import Campaign, Drawn, Record, simulate, write

@@ -21,7 +21,7 @@ RATES_HZ = (100.0, 200.0, 250.0, 500.0, 1000.0)
 
 @dataclass(frozen=True)
 class Drawn:
-    """The quantities drawn from a seed.
+    """Drive, kind of motion, logger and durations, drawn from a seed.
 
     Attributes
     ----------
@@ -48,13 +48,13 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Campaign:
-    """A drawn drive and its records."""
+    """Simulated campaign: the drive with its logger, and the records of its runs."""
 
     drawn: Drawn
     records: list[Recorded]
 
     def truth(self) -> dict[str, Any]:
-        """Return the parameters as numbers and strings, for JSON."""
+        """Return the drawn quantities and the hidden effects as numbers and strings, for JSON."""
         hidden = {part.name: asdict(part) for part in self.drawn.plant.hidden.parts}
         return {**asdict(self.drawn), "hidden": hidden}
 
@@ -129,7 +129,7 @@ def simulate(seed: int, hidden: Sequence[str] = (), runs: int = RUNS) -> Campaig
 
 
 def write(campaign: Campaign, folder: Path) -> None:
-    """Write `rig.toml` and one CSV per run."""
+    """Write `rig.toml` and one CSV per run to a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     rotary = campaign.drawn.rotary
     motion, friction = ("rotary", "torque") if rotary else ("linear", "force")

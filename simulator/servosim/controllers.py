@@ -17,12 +17,12 @@ KINDS = ("steps", "trapezoids", "point_to_point", "jog", "soft", "hand")
 
 @dataclass(frozen=True)
 class Demand:
-    """Requirements of a motion.
+    """Speed, acceleration and torque that a motion requires.
 
     Attributes
     ----------
     top
-        Velocity, rad/s or m/s.
+        Largest velocity, rad/s or m/s.
     acceleration
         rad/s^2 or m/s^2.
     limit
@@ -76,7 +76,7 @@ def _reference(
     start: float,
     random: np.random.Generator,
 ) -> tuple[Array, Array]:
-    """Reference position and velocity at each tick."""
+    """Return the reference position and velocity at each tick of the controller."""
     top, ramp = demand.top, demand.acceleration
     velocity = np.zeros(ticks)
     t, side = int(0.2 / tick_s), 1.0
@@ -116,7 +116,7 @@ def _reference(
 def _hand(
     plant: Plant, demand: Demand, tick_s: float, ticks: int, random: np.random.Generator
 ) -> Control:
-    """A human hand that tracks a smooth random motion with limited accuracy."""
+    """Return the controller for a human hand that tracks a smooth random motion inaccurately."""
     knots = random.normal(0.0, 0.6 * demand.top, int(ticks * tick_s / 0.25) + 3)
     time = np.arange(ticks) * tick_s / 0.25
     k = np.minimum(time.astype(int), len(knots) - 3)

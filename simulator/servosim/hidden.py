@@ -1,4 +1,4 @@
-"""Effects hidden in a simulated drive: friction and forces missing from its plain model.
+"""Effects hidden in a simulated drive: friction and forces that its basic model lacks.
 
 Sizes are drawn relative to the friction, speed and stroke of the drive. The names in `EFFECTS` are
 those of the library's catalogue; no catalogue contains those in `UNKNOWN`.
@@ -17,7 +17,7 @@ Rng = np.random.Generator
 
 @dataclass
 class Course:
-    """The current state of a run.
+    """Present state of a run, on which hidden effects depend.
 
     Attributes
     ----------
@@ -43,9 +43,9 @@ class Course:
 
 @dataclass(frozen=True)
 class Scale:
-    """Quantities of the drive that scale the effects.
+    """Quantities of the drive by which the effects are scaled.
 
-    Coulomb friction, viscous friction, largest speed and a typical stroke.
+    They are Coulomb friction, viscous friction, largest speed and a typical stroke.
     """
 
     coulomb: float
@@ -61,13 +61,13 @@ class Hidden(Protocol):
 
     @classmethod
     def draw(cls, scale: Scale, random: Rng) -> Hidden:
-        """Draw an effect of typical size."""
+        """Draw an effect of typical size for a drive."""
 
     def level(self, at: Course) -> float:
-        """Term added to the Coulomb level."""
+        """Additional Coulomb friction, N m or N."""
 
     def drag(self, at: Course) -> float:
-        """Term added to the viscous friction, along the motion."""
+        """Additional viscous friction, in the direction of motion, N m or N."""
 
     def factor(self, at: Course) -> float:
         """Factor on all friction."""
@@ -76,12 +76,12 @@ class Hidden(Protocol):
         """Force that the drive must overcome, independent of the direction of motion."""
 
     def lost_share(self) -> float:
-        """Share of the transmitted force that is lost."""
+        """Fraction of the transmitted force that is lost as friction."""
 
 
 @dataclass(frozen=True)
 class Plain:
-    """Base class of an effect that adds nothing; subclasses override what they change."""
+    """Base class of an effect without influence; subclasses override what they change."""
 
     def level(self, at: Course) -> float:
         return 0.0
@@ -101,7 +101,7 @@ class Plain:
 
 @dataclass(frozen=True)
 class StribeckExcess(Plain):
-    """Higher friction at low speed."""
+    """Stribeck effect: higher friction at low speed."""
 
     name: ClassVar[str] = "stribeck_excess"
     height: float
@@ -119,7 +119,7 @@ class StribeckExcess(Plain):
 
 @dataclass(frozen=True)
 class ViscousAsymmetry(Plain):
-    """Viscous friction that is larger in one direction."""
+    """Viscous friction with different slopes in the two directions."""
 
     name: ClassVar[str] = "viscous_asymmetry"
     slope: float
@@ -167,7 +167,7 @@ class TorqueProportional(Plain):
 
 @dataclass(frozen=True)
 class Cogging(Plain):
-    """A force that is periodic in the position."""
+    """Force that is periodic in the position."""
 
     name: ClassVar[str] = "cogging"
     amplitude: float
@@ -220,7 +220,7 @@ class WarmUp(Plain):
 
 @dataclass(frozen=True)
 class Hum(Plain):
-    """A disturbance at one frequency, with a different phase in each run."""
+    """Force with one frequency and a different phase in each run."""
 
     name: ClassVar[str] = "hum"
     amplitude: float
@@ -236,7 +236,7 @@ class Hum(Plain):
 
 @dataclass(frozen=True)
 class LevelStep(Plain):
-    """A Coulomb level that changes at one instant of every run."""
+    """Coulomb friction that changes at one instant of every run."""
 
     name: ClassVar[str] = "level_step"
     change: float
@@ -253,7 +253,7 @@ class LevelStep(Plain):
 
 @dataclass(frozen=True)
 class StrokeScatter(Plain):
-    """A Coulomb level that varies randomly from stroke to stroke."""
+    """Coulomb friction that varies at random from stroke to stroke."""
 
     name: ClassVar[str] = "stroke_scatter"
     sd: float
@@ -283,7 +283,7 @@ UNKNOWN: dict[str, type[Hidden]] = {kind.name: kind for kind in (Hum, LevelStep,
 
 @dataclass(frozen=True)
 class Together:
-    """All effects of one drive; terms are summed, factors multiplied."""
+    """All hidden effects of one drive; terms are added, factors multiplied."""
 
     parts: tuple[Hidden, ...] = field(default=())
 

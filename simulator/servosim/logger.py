@@ -18,7 +18,7 @@ FORCES = ("command", "sensor", "quantised")
 
 @dataclass(frozen=True)
 class Logger:
-    """Description of how runs are recorded.
+    """Recording of the runs of a drive: sampling, channels and their errors.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class Logger:
         with wrong stamps; `millis`: whole milliseconds of a loop of another period; `arrival`: an
         even clock, stamped on arrival.
     stamp_share
-        Size of the stamp error, samples.
+        Size of the error of the stamps, sampling intervals.
     speed
         `drive`: a filtered difference of counts; `tacho`: with noise; `differenced`: computed by
         the logger from the recorded positions; `none`.
@@ -38,7 +38,7 @@ class Logger:
     speed_noise
         Standard deviation of the tachometer.
     speed_late, force_late
-        Delays of the velocity and force readings, samples.
+        Delays of the velocity and force readings, sampling intervals.
     count
         Step of the encoder, rad or m.
     force
@@ -64,7 +64,7 @@ class Logger:
 
 @dataclass(frozen=True)
 class Recorded:
-    """One recorded run; arrays of shape (n,). `velocity` is None if it was not recorded."""
+    """Recorded run with arrays of shape (n,); `velocity` is None if it was not recorded."""
 
     time_s: Array
     position: Array

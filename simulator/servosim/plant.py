@@ -1,8 +1,8 @@
-"""A drive with inertia, gravity, viscous and set-valued Coulomb friction, integrated tick by tick.
+"""Drive with inertia, gravity, viscous and set-valued Coulomb friction, integrated exactly.
 
-Between two ticks of the controller the torque is constant, so the viscous motion is an exponential
-in closed form. Reversals, stops and breakaways are events. Gravity and hidden effects are evaluated
-at the start of each piece, and a piece is at most one tick long.
+Between two instants (ticks) of the controller the torque is constant, so the viscous motion is an
+exponential in closed form. Reversals, stops and breakaways are events. Gravity and hidden effects
+are evaluated at the start of each piece, and a piece is at most one tick long.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from servosim.hidden import NOTHING, Course, Together
 
 Array = npt.NDArray[np.float64]
 Control = Callable[[int, float, float], float]
-"""Function that returns the torque of a tick from its number, position and velocity."""
+"""Controller: function that returns the torque from the number of the tick, position, velocity."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Plant:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The motion between events: pieces of constant torque and constant sign of the friction.
+    """Simulated motion in pieces of constant torque and constant sign of the friction.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Trajectory:
     torque: Array
 
     def at(self, instants: Array) -> tuple[Array, Array, Array, Array]:
-        """Position, velocity, acceleration and torque at instants, each of shape (n,)."""
+        """Return position, velocity, acceleration and torque at instants, each of shape (n,)."""
         k = np.clip(np.searchsorted(self.time, instants, "right") - 1, 0, len(self.before) - 1)
         h = self.time[k + 1] - self.time[k]
         s = np.clip((instants - self.time[k]) / np.where(h > 0.0, h, 1.0), 0.0, 1.0)
@@ -89,7 +89,10 @@ def run(
     start: float,
     random: np.random.Generator | None = None,
 ) -> Trajectory:
-    """Simulate a plant from rest at a position; `random` draws what varies from run to run."""
+    """Simulate a plant that starts at rest at a position.
+
+    `random` draws the quantities that vary from run to run.
+    """
     m, d, hidden = plant.inertia, plant.viscous, plant.hidden
     random = np.random.default_rng(0) if random is None else random
     at = Course(0.0, start, 0.0, 0, random.uniform(0.0, 2.0 * math.pi), [])

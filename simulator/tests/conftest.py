@@ -1,4 +1,4 @@
-"""Let the tests import rigsim without installing it."""
+"""Adds the simulator to the import path of its tests."""
 
 import sys
 from pathlib import Path

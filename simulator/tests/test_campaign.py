@@ -1,4 +1,4 @@
-"""Motions, noise, foreign effects, seeds, files and the command line."""
+"""Tests of motions, noise, foreign effects, seeds, files and the command line."""
 
 import json
 

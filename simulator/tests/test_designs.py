@@ -1,4 +1,4 @@
-"""Randomly drawn rigs: ranges of their quantities, motions, effects and initial film states."""
+"""Tests of randomly drawn rigs: ranges, motions, effects and initial film states."""
 
 import numpy as np
 import pytest

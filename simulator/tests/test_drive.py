@@ -1,4 +1,4 @@
-"""A journal behind a compliant drive: stick, slip, and the limits of a stiff drive."""
+"""Tests of a journal with a compliant drive: sticking, sliding, and the limit of a stiff drive."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def force(motion, **changes):
 
 
 def fixed_step(motion, step, every):
-    """Friction by a semi-implicit method that resolves stick or slip exactly in each step."""
+    """Friction by a semi-implicit method in fixed steps, each of which sticks or slides."""
     film, radius = Film.of(BASE), BASE.bearing.radius_m
     eps, phi = film.start()
     k, c, inertia = DRIVE["k"], DRIVE["c"], DRIVE["J"]
@@ -80,7 +80,7 @@ def test_friction_before_breakaway_equals_the_force_of_spring_and_damper():
 
 
 def test_friction_work_behind_a_compliant_drive_is_close_to_a_rigid_drive():
-    """The two differ by at most the energy stored in the spring plus 20 %."""
+    """The two values differ by at most the energy stored in the spring plus 20 %."""
     motion = sine("swing", 13.0, 0.127, 1.0)
     record = simulate_run(BASE, {"drive_compliance": DRIVE}, motion, rate_hz=500.0)
     rigid = simulate_run(BASE, {}, motion, rate_hz=500.0)

@@ -1,4 +1,4 @@
-"""Each effect of the simulator against its null, its usual size and its closed form."""
+"""Tests of each simulated effect against its null value, its typical size and its closed form."""
 
 import math
 from dataclasses import replace
@@ -169,7 +169,7 @@ def test_sensor_effects_act_in_the_order_hysteresis_nonlinearity_offset():
 
 
 def test_lag_and_delay_computed_on_a_grid_agree_with_those_computed_by_a_state():
-    """A nonlinear sensor is computed on a grid instead of by a state."""
+    """With a nonlinear sensor, filter and delay are computed on a grid instead of by a state."""
     straight = {"sensor_nonlinearity": {"c": 1e-12}}
     for other in ({"sensor_lag": {"tau": 0.1}}, {"time_delay": {"tau": 0.1}}):
         gap = np.abs(force(straight | other) - force(other))
@@ -184,7 +184,7 @@ def test_simulator_refuses_unknown_effect_and_parameter_names():
 
 
 def test_vogel_viscosity_at_a_steady_temperature_equals_a_thinner_oil():
-    """A thinner oil also has a higher transition speed."""
+    """The transition speed of a thinner oil is also higher."""
     thin = math.exp(800.0 / (45.0 + 95.0) - 800.0 / (25.0 + 95.0))
     oil = replace(BASE.bearing, viscosity_pa_s=BASE.bearing.viscosity_pa_s * thin)
     other = replace(BASE, U_tr=BASE.U_tr / thin, bearing=oil)

@@ -1,4 +1,4 @@
-"""The base law against the published Table 4.2 and the steady force balance."""
+"""Tests of the base law against Table 4.2 of Cohn (1998) and the steady force balance."""
 
 import math
 
@@ -17,7 +17,7 @@ def hold(speed: float, seconds: float = 60.0):
 
 
 def balance(base: Base, speed: float) -> float:
-    """Steady friction coefficient from (3.5, 3.6), by bisection."""
+    """Steady friction coefficient from (3.5) and (3.6) of Cohn (1998), by bisection."""
     film, ub = Film.of(base), speed / base.U_tr
 
     def excess(eps: float) -> float:

@@ -1,4 +1,4 @@
-"""Each recording artefact: which channel it changes, the size that it reports, repeatability."""
+"""Tests of each recording artefact: its channel, its reported size, repeatability."""
 
 import json
 from functools import cache
@@ -15,7 +15,7 @@ NOISE_N = CLEAN_TRUTH["noise_n"]
 
 @cache
 def recorded_with(*artefacts, strength="usual", seed=SEED):
-    """Recorded runs and the reported size of the first artefact, by run."""
+    """Return the recorded runs and the reported sizes of the first artefact, by run."""
     records, truth = recorded(seed, (), artefacts, strength)
     done = {entry["run"]: entry for entry in truth["recording"] if entry["kind"] == artefacts[0]}
     assert set(done) == set(records)
@@ -23,7 +23,7 @@ def recorded_with(*artefacts, strength="usual", seed=SEED):
 
 
 def pairs(*artefacts, strength="usual"):
-    """Clean run, the same run with the artefact, and the reported size."""
+    """Return a run without and with the artefacts, and the reported size of the first one."""
     records, sizes = recorded_with(*artefacts, strength=strength)
     return [(CLEAN[name], records[name], sizes[name]) for name in CLEAN]
 

@@ -1,4 +1,4 @@
-"""The servo drives: laws of motion, and parameters by least squares with the true motion."""
+"""Tests of the servo drives: equations of motion, and parameters by least squares."""
 
 from dataclasses import replace
 from typing import Any
@@ -21,7 +21,7 @@ SEEDS = range(1, 25)
 
 
 def test_drive_without_gravity_slides_to_a_stop_after_its_kinetic_energy_is_lost() -> None:
-    """With almost no viscous friction a drive of speed v stops after J v^2 / (2 F_c)."""
+    """Without gravity and with almost no viscous friction, a drive stops after J v^2 / (2 F_c)."""
     plant = Plant(0.5, 0.8, 1e-4, 0.0, False)
     push = 2.0
     pushed = 500
@@ -50,7 +50,7 @@ def test_viscous_drive_approaches_its_speed_exponentially() -> None:
 
 
 def moving_samples(campaign: servosim.Campaign) -> tuple[Any, Any]:
-    """Regressors computed from the true motion, and recorded forces."""
+    """Return regressors computed from the true motion, and the recorded forces."""
     plant, rows, forces = campaign.drawn.plant, [], []
     for r in campaign.records:
         columns = [np.sign(r.true_velocity), r.true_velocity, r.true_acceleration]
@@ -107,7 +107,7 @@ def test_drive_with_a_stribeck_peak_sticks_below_it_and_breaks_away_above() -> N
 
 
 def test_loss_in_the_transmission_adds_its_share_of_the_weight_to_a_steady_torque() -> None:
-    """Lifting takes W (1 + mu) + F_c + F_v v, lowering W (1 - mu) - F_c - F_v v."""
+    """Lifting requires W (1 + mu) + F_c + F_v v, lowering W (1 - mu) - F_c - F_v v."""
     plant = hidden_in(Plant(0.5, 0.8, 2.0, 3.0, False), TorqueProportional(0.2))
     for torque, speed in ((3.0 * 1.2 + 0.8 + 1.0, 0.5), (3.0 * 0.8 - 0.8 - 1.0, -0.5)):
         motion = run(plant, lambda tick, x, v, u=torque: u, 1e-3, 6000, 0.0)

@@ -1,4 +1,4 @@
-"""From exact signals to the logger's record: recording artefacts at three strengths."""
+"""Loggers: recording artefacts at three strengths, applied to the exact signals of a rig."""
 
 from .campaign import recorded, write_recorded
 from .catalogue import ARTEFACTS, OFF_GRID, ONE_OF

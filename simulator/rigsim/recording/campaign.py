@@ -46,7 +46,7 @@ def recorded(
     *,
     for_held_out: bool = False,
 ) -> tuple[Runs, dict[str, Any]]:
-    """Simulate records by run name, and return them with the true values.
+    """Simulate the runs of a campaign with a logger; return records by name and true values.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def recorded(
 
 
 def _peak(runs: Sequence[Signals]) -> float:
-    """Force that a campaign rarely exceeds (99.5 % quantile), N."""
+    """99.5 % quantile of the absolute force over the runs of a campaign, N."""
     coarse = [s.force(np.arange(0.0, s.motion.duration_s - s.begins_s, 0.05)) for s in runs]
     return float(np.quantile(np.abs(np.concatenate(coarse)), 0.995))
 
@@ -125,7 +125,7 @@ def _logged(
 
 
 def _gap(signals: Signals, bare: Signals, record: Record) -> float:
-    """RMS of the change that an effect causes in a run, N; it limits the effect's visibility."""
+    """RMS of the change of the force by an effect in a run, N, a measure of its visibility."""
     times = record.time_s
     return float(np.sqrt(np.mean((signals.force(times) - bare.force(times)) ** 2)))
 
@@ -138,7 +138,10 @@ def write_recorded(
     artefacts: Sequence[str] = (OFF_GRID,),
     artefact_strength: str = "usual",
 ) -> dict[str, Any]:
-    """Write a campaign and its held-out runs, and the truth file next to the first folder."""
+    """Write a campaign and its held-out runs; return the true values.
+
+    The file of the true values is next to the first folder.
+    """
     records, truth = recorded(seed, effects, artefacts, artefact_strength)
     others, _ = recorded(seed, effects, for_held_out=True)
     design = draw_design(seed)

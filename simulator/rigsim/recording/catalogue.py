@@ -1,4 +1,4 @@
-"""The artefacts by name, in the order in which they act on a signal."""
+"""Catalogue of recording artefacts, in the order in which they act on a signal."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _IN_ORDER = (
     *LOAD,
 )
 OFF_GRID = "off_grid"
-"""No artefact except that starts and stops fall between samples, as in all recordings here."""
+"""Name for a recording without artefacts, in which starts and stops fall between samples."""
 
 ARTEFACTS: dict[str, Artefact] = {
     a.name: a for a in sorted(_IN_ORDER, key=lambda a: STAGES.index(a.stage))
@@ -32,11 +32,14 @@ ONE_OF = (
     {"coarse_velocity", "backward_velocity", "filtered_velocity"},
     {"slow_force", "drifting_clock"},
 )
-"""Artefacts that exclude each other: a recording has one speed and one clock of the force."""
+"""Groups of artefacts of which a recording can have only one."""
 
 
 def chosen(names: tuple[str, ...]) -> list[Artefact]:
-    """Return the named artefacts in order; raise for unknown or mutually exclusive names."""
+    """Return the named artefacts in the order of their action.
+
+    Raises for unknown and for mutually exclusive names.
+    """
     if unknown := set(names) - set(ARTEFACTS) - {OFF_GRID}:
         known = ", ".join([OFF_GRID, *ARTEFACTS])
         raise ValueError(f"no artefact named {', '.join(sorted(unknown))}; there are {known}")

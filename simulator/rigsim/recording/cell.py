@@ -1,4 +1,4 @@
-"""The cell and its converter: zero and gain per run, limited range, quantisation."""
+"""Artefacts of the load cell and its converter: zero and gain per run, range, quantisation."""
 
 from __future__ import annotations
 

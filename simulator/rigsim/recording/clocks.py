@@ -1,4 +1,4 @@
-"""Sampling instants of the channels: delay, jitter, clock drift, a slow clock."""
+"""Artefacts of the sampling instants of the channels: delay, jitter, clock drift, a slow clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A record under construction, between the rig and the logger's file."""
+"""Record of a run between the exact signals of the rig and the file of the logger."""
 
 from __future__ import annotations
 
@@ -29,10 +29,11 @@ STAGES: tuple[Stage, ...] = (
     "load",
     "rows",
 )
-"""Stages of a signal, in order.
+"""Stages of a recording, in the order in which they act.
 
-The rig of this run; the sampling instants of each channel; the cell's zero and gain; its noise; the
-converter; the transport in the logger; the encoder; the load; the rows of the file.
+They are the rig of this run, the sampling instants of each channel, zero and gain of the load cell,
+its noise, the converter, the transport in the logger, the encoder, the load, and the rows of the
+file.
 """
 
 Sizes = dict[str, float]
@@ -40,9 +41,9 @@ Sizes = dict[str, float]
 
 @dataclass(frozen=True)
 class Signals:
-    """The exact signals of a run at any instant; 0 s is the first sample of the record.
+    """Exact signals of a run at any instant; the first sample of the record is at 0 s.
 
-    `film_start` is None in a run that begins when its motion begins.
+    `film_start` is None in a run that begins with its motion.
     """
 
     base: Base
@@ -56,7 +57,7 @@ class Signals:
         return np.clip(times + self.begins_s, 0.0, self.motion.duration_s)
 
     def force(self, times: Vector) -> Vector:
-        """Force (N) including offset and drift of the cell; `times` (s) ascend."""
+        """Return the force (N) with offset and drift of the load cell at `times` (s, ascending)."""
         force = cell_force(
             self.base,
             self.effects,
@@ -68,23 +69,24 @@ class Signals:
         return read_out(force, times, self.effects)
 
     def speed(self, times: Vector) -> Vector:
-        """Surface speed (m/s)."""
+        """Return the surface speed at `times` (s), m/s."""
         return commanded(self.motion, self._into_motion(times))[0]
 
     def angle(self, times: Vector) -> Vector:
-        """Angle of the encoder (rad)."""
+        """Return the angle of the encoder at `times` (s), rad."""
         position = commanded(self.motion, self._into_motion(times))[1]
         return self.start_angle_rad + position / self.base.bearing.radius_m
 
 
 @dataclass
 class Draft:
-    """The current state of a run's record.
+    """Record of a run to which the artefacts are applied in turn.
 
     `stamps` are the times written to the file, `instants` the true sampling instants of the
-    encoder. `force_instants` are the true ones of the cell's converter, `force_stamps` those
-    assumed by the logger (s). The force stays on its own instants until the transport stage maps it
-    to the stamps. `unit` is noise of unit size, `scale` (N) its size, `extra` (N) additional noise.
+    encoder. `force_instants` are the true sampling instants of the force, and `force_stamps` those
+    that the logger assumes (s). The force has its own instants until the transport stage maps it to
+    the stamps. `unit` is noise of unit size, `scale` its size (N), and `extra` additional noise
+    (N).
     """
 
     signals: Signals
@@ -114,7 +116,7 @@ class Draft:
 
 @dataclass(frozen=True)
 class Artefact:
-    """An artefact of the recording.
+    """Artefact of the recording, with functions to draw its size and to apply it.
 
     `draw` returns its sizes for a campaign from the ranges of a strength. `apply` applies it to a
     run and returns its sizes in this run. Each uses a separate generator.

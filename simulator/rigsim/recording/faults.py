@@ -1,4 +1,4 @@
-"""Occasional faults: spikes, a force that is held, a wrong position, lost rows."""
+"""Artefacts at some instants only: spikes, a held force, a wrong position, lost rows."""
 
 from __future__ import annotations
 

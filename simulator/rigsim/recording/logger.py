@@ -1,4 +1,4 @@
-"""Convert one run from the exact signals to the columns of the file."""
+"""Conversion of one run from the exact signals to the columns of the file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def logged(
     seed: int,
     run: str,
 ) -> tuple[Record, list[dict[str, Any]]]:
-    """Return the record of a run and, for each artefact, its kind, channel, run and size."""
+    """Record a run; return its record, and kind, channel, run and size of each artefact."""
     stamps = np.arange(int(length_s * rate_hz)) / rate_hz
     draft = Draft(signals, stamps, noise_n, peak_n, counts_per_rad)
     done: list[dict[str, Any]] = []
@@ -70,7 +70,7 @@ def _add_noise(draft: Draft, meet: Callable[[Stage], None], seed: int, run: str)
 
 
 def _onto_stamps(draft: Draft, force: Vector) -> Vector:
-    """Map a force sampled on its own clock to the stamps, by linear interpolation or hold."""
+    """Map a force with its own sampling instants to the time stamps, by interpolation or hold."""
     if draft.force_stamps is draft.stamps:
         return force
     if not draft.held:
@@ -87,5 +87,5 @@ def _measure_motion(draft: Draft, seed: int, run: str) -> None:
 
 
 def sizes_of(artefacts: Iterable[Artefact], strength: str, seed: int) -> Mapping[str, Sizes]:
-    """Draw the sizes of artefacts for a campaign."""
+    """Draw the sizes of artefacts for a campaign, by the name of the artefact."""
     return {a.name: a.draw(strength, stream(seed, "artefact", a.name, strength)) for a in artefacts}

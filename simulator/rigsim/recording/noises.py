@@ -1,4 +1,4 @@
-"""Noise that differs from white noise of constant size."""
+"""Artefacts of the noise, which is not white or not of constant size."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sizes of artefacts: a range for each strength, from which a size is drawn once per campaign."""
+"""Sizes of artefacts, drawn once per campaign from a range for each strength."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def sized(**ranges: tuple[Range, Range, Range]) -> Callable[[str, Rng], dict[str
 
 
 def fixed(value: float) -> Range:
-    """A range that contains only `value`."""
+    """Return a range that contains only `value`."""
     return value, value
 
 
 def chance(rng: Rng, share: float) -> bool:
-    """Return True with probability `share`."""
+    """Return True with the probability `share`."""
     return bool(rng.random() < share)
 
 

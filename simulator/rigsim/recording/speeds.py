@@ -1,4 +1,4 @@
-"""Speeds not measured by a tachometer: differences of encoder counts, and filtered speeds."""
+"""Artefacts of the speed: differences of encoder counts, and filtered speeds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COARSE_COUNTS = {"mild": 36000.0, "usual": 10000.0, "severe": 4000.0}  # counts 
 
 
 def _difference(draft: Draft, counts_per_rad: float, before: int, after: int) -> Vector:
-    """Speed (m/s) from whole counts over the interval from `before` samples back to `after` ahead.
+    """Speed (m/s) from whole counts between `before` samples earlier and `after` samples later.
 
     At the ends of a record the interval is shortened. The logger divides by the stamps, not by the
     true instants.

@@ -62,7 +62,7 @@ def imports() -> Counter[tuple[str, str]]:
 
 
 def box(ax: Axes, x: float, y: float, size: tuple[float, float], title: str, words: str) -> None:
-    """Draw a package: its name, its input and its output."""
+    """Draw the box of a package or step: its name, its input and its output."""
     width, height = size
     colour = CORE if title == "_core" else BOX
     corner = (x - width / 2, y - height / 2)
@@ -74,7 +74,7 @@ def box(ax: Axes, x: float, y: float, size: tuple[float, float], title: str, wor
 
 
 def canvas(width: float, height: float) -> tuple[Figure, Axes]:
-    """Return a figure of this size and axes, both in inches."""
+    """Return a figure of this size and axes that fill it, both with inches as units."""
     figure = Figure(figsize=(width, height))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     ax.set_xlim(0.0, width)
@@ -84,7 +84,7 @@ def canvas(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float = 0.0) -> None:
-    """Draw an arrow from `a` to `b`."""
+    """Draw an arrow from point `a` to point `b`, curved by `bend`."""
     style = f"arc3,rad={bend}"
     ax.add_patch(
         FancyArrowPatch(
@@ -94,7 +94,7 @@ def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float 
 
 
 def packages() -> Figure:
-    """Draw the packages from top to bottom; each imports only those below it."""
+    """Draw the diagram of the packages; each imports only those below it."""
     counts = imports()
     figure, ax = canvas(9.4, 1.12 * len(LAYERS) + 0.24)
     places: dict[str, tuple[float, float]] = {}
@@ -145,7 +145,7 @@ STEPS: list[tuple[str, str]] = [
 
 
 def data_flow() -> Figure:
-    """Draw the steps of a diagnosis in order, along the top and back along the bottom."""
+    """Draw the diagram of the data flow: the steps of a diagnosis in their order."""
     figure, ax = canvas(11.0, 3.9)
     places = []
     for k, (name, words) in enumerate(STEPS):

@@ -1,4 +1,4 @@
-"""Print the figures of docs/control.md that no `jbf control` prints; half a minute.
+"""Print the numbers in docs/control.md that no `jbf control` command prints (half a minute).
 
 `.venv/bin/python docs/control_figures.py`
 """
@@ -16,11 +16,11 @@ from jbf.control.schemes import LISTED_VOLTS
 from jbf.control.tuning import LAW_RAD_S
 
 LOGGED = 11
-"""The thesis's program logs every 11th step of a 50 s run."""
+"""Interval of the log in the program of Cohn (1998), in steps of a 50 s run."""
 
 
 def ablation() -> None:
-    """Print the errors of the observed compensator without each of its parts."""
+    """Print the tracking errors of the compensator with an observer, without each of its parts."""
     model, rigid = thesis_model(), thesis_model(elastic="nothing")
     settings = tune(model)
     variants = {
@@ -45,7 +45,7 @@ def ablation() -> None:
 
 
 def starts() -> None:
-    """Print the peaks at the start, with friction that grows while the rig is at rest."""
+    """Print the peak errors at the start, with friction that grows while the rig is at rest."""
     values = {n: p.value for n, p in thesis_model().parameters.items()}
     for a in (0.0, 0.05, 0.1):
         model = Model(
@@ -60,7 +60,7 @@ def starts() -> None:
 
 
 def reversals() -> None:
-    """Print the peaks at slow reversals: of all steps, of logged ones, and with more damping."""
+    """Print the peak errors at slow reversals: all steps, logged steps, and more damping."""
     damped = thesis_model(**{"drive_compliance.c": 1.0})
     for row in ("velocity sine", "velocity triangle"):
         for scheme in ("learning", "coulomb"):
@@ -75,7 +75,7 @@ def reversals() -> None:
 
 
 def relay() -> None:
-    """Print the rate of reversals in the position sine, and the largest compensation."""
+    """Print the rate of reversals in the position sine, and the largest compensation voltage."""
     for volts in (None, LISTED_VOLTS):
         r = run(None, Learning(volts=volts), replace(TASKS["position sine"], seconds=25.0))
         turns = np.sum(np.diff(np.sign(r.velocity_rad_s)) != 0.0) / r.task.seconds

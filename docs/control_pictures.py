@@ -1,4 +1,4 @@
-"""Make the pictures of docs/control.md: `.venv/bin/python docs/control_pictures.py`."""
+"""Draw the pictures of docs/control.md: `.venv/bin/python docs/control_pictures.py`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SEEDS = 2
 
 
 def runs(row: str) -> Figure:
-    """Plot four schemes next to each other for one row of the tables."""
+    """Plot the runs of four compensators for one row of Tables 6.1 and 6.2 of Cohn (1998)."""
     return plot_runs([control.run(None, scheme, control.TASKS[row]) for scheme in SCHEMES])
 
 
@@ -37,7 +37,7 @@ def _ratios(ax: Axes, values: np.ndarray, lines: dict[str, list[float]], label: 
 
 
 def settled() -> Figure:
-    """Plot the ratios to the thesis's figures over the scale and the belt stiffness."""
+    """Plot the ratios to the results of Cohn (1998) against friction scale and belt stiffness."""
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     bench, model = control.THESIS_BENCH, control.thesis_model()
@@ -75,7 +75,7 @@ def settled() -> Figure:
 
 
 def main() -> None:
-    """Make all pictures; takes a minute."""
+    """Draw all pictures (one minute)."""
     figures = {
         "control_velocity_sine": runs("velocity sine"),
         "control_position_triangle": runs("position triangle"),

@@ -30,15 +30,15 @@ PLAIN, WITH = "0.3", "tab:red"
 
 @dataclass(frozen=True)
 class Shown:
-    """Content of a picture: the parameters of an effect, and the motion."""
+    """Content of the picture of an effect: its parameters, and the motion."""
 
     values: Mapping[str, float] = field(default_factory=dict)
     motion: str = "a sine of 1 rad/s"
     load_share: float = 1.0
     beside: Mapping[str, float] = field(default_factory=dict)
-    """Parameters of other effects that this one requires, used in both curves."""
+    """Parameters of other effects that the effect requires, used in both curves."""
     warms_c: tuple[float, float] | None = None
-    """Temperatures at the beginning and at the end, C."""
+    """Temperatures at the beginning and at the end, C; None for a constant temperature."""
 
 
 SHOWN = {
@@ -109,11 +109,11 @@ SHOWN = {
     "sensor_offset": Shown({"b": 4.0}),
     "sensor_drift": Shown({"d": 0.2}, "eight periods of 1 rad/s"),
 }
-"""Values large enough to be visible. Effects without an entry use their starting values."""
+"""Parameters at which an effect is visible, by name; other effects have their starting values."""
 
 
 def speed_of(motion: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) and surface speeds (m/s) of a motion by its name."""
+    """Return times (s) and surface speeds (m/s) of a motion by its name."""
     if motion.startswith("starts"):
         knots = [(0.0, 0.0)]
         for rest in (1.0, 3.0, 9.0):
@@ -129,14 +129,14 @@ def speed_of(motion: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shown(effect: Effect) -> Shown:
-    """Return the content of an effect's picture."""
+    """Return the content of the picture of an effect."""
     if effect.name in SHOWN:
         return SHOWN[effect.name]
     return Shown({p.name: p.starts[0] for p in effect.parameters})
 
 
 def motion_of(effect: Effect, speed_times: float = 1.0, load_times: float = 1.0) -> jbf.Run:
-    """Return the motion under which an effect is shown, without friction."""
+    """Return the motion under which an effect is shown, as a run without friction."""
     what = shown(effect)
     time, speed = speed_of(what.motion)
     speed = speed_times * speed
@@ -189,7 +189,7 @@ def record(effect: Effect, folder: Path) -> None:
 
 
 def draw(effect: Effect) -> Figure:
-    """Plot friction against speed and over time, without the effect and with it."""
+    """Plot friction against speed and time, without the effect and with it."""
     motion = motion_of(effect)
     plain, changed = (model.predict(motion) for model in models_of(effect))
     figure = Figure(figsize=(9.0, 3.4), layout="constrained")
@@ -213,7 +213,7 @@ def _curves(axes: Axes, x: np.ndarray, plain: np.ndarray, changed: np.ndarray) -
 
 
 def page(effect: Effect) -> str:
-    """Return the page of an effect, as Markdown."""
+    """Return the page of an effect in Markdown."""
     what = shown(effect)
     units = {p.name: p.unit for p in effect.parameters}
     values = ", ".join(f"{n} = {v:g} {_unit(units, n)}".strip() for n, v in what.values.items())
@@ -286,7 +286,7 @@ def _row(p: Parameter) -> str:
 
 
 def index() -> str:
-    """Return the list of all pages, in the order of the signal chain."""
+    """Return the page that lists all effects, in the order of the signal chain."""
     lines = [
         "# Effects",
         "",
@@ -308,12 +308,12 @@ def index() -> str:
 
 
 def catalogue() -> dict[str, Effect]:
-    """Return the effects of the library."""
+    """Return the effects of the catalogue by name."""
     return built_in()
 
 
 def texts() -> dict[Path, str]:
-    """Return every page by its path."""
+    """Return the text of every page by its path."""
     pages = {FOLDER / f"{e.name}.md": page(e) for e in catalogue().values()}
     return {FOLDER / "README.md": index(), **pages}
 

@@ -1,7 +1,8 @@
 """Write docs/why/failures.md and its pictures: `.venv/bin/python docs/failures.py [--check]`.
 
-Each failure is simulated. Runs of the thesis's bearing contain a hidden effect or disturbance, the
-law alone is fitted to them, and the residual is drawn. Causes and advice are those of the reports.
+Each failure is simulated. Runs of the bearing in Cohn (1998) contain a hidden effect or
+disturbance, the law without effects is fitted to them, and the residual is drawn. Causes and advice
+are those of the reports.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ Spoil = Callable[[int, Array, Array], Array]
 
 @dataclass(frozen=True)
 class Shown:
-    """A failure: the axis or kind along which it appears, its description, and its values."""
+    """Failure of a fit: the axis or kind along which it appears, its description, its values."""
 
     kind: str
     title: str
@@ -99,7 +100,7 @@ SHOWN = (
 
 
 def motions() -> list[tuple[str, Array, Array]]:
-    """Return names, times and speeds: sines, starts and stops."""
+    """Return name, times (s) and speeds (m/s) of each motion: sines, starts and stops."""
     time_s = np.arange(0.0, 30.0, STEP_S)
     levels = np.array([0.0, 0.03, 0.0, -0.06, 0.0, 0.09, 0.0, -0.03, 0.0, 0.06])
     held = levels[np.minimum((time_s / 3.0).astype(int), len(levels) - 1)]
@@ -113,7 +114,7 @@ def motions() -> list[tuple[str, Array, Array]]:
 
 
 def compared(shown: Shown) -> Comparison:
-    """Fit the law alone to runs with a hidden effect, and compare it with them."""
+    """Fit the law alone to simulated runs with the failure, and compare the two."""
     rig, random = jbf.Rig.thesis(), np.random.default_rng(11)
     effect_values = shown.effects or {}
     names = list(dict.fromkeys(name.partition(".")[0] for name in effect_values))
@@ -136,7 +137,7 @@ def compared(shown: Shown) -> Comparison:
 
 
 def looks(shown: Shown, comparison: Comparison) -> str:
-    """Describe the result of the comparison; the axis must be among those that it names."""
+    """Describe how the failure appears in the comparison, which must report it."""
     if shown.kind == "frequency":
         return (
             "The spectrum has one line above the noise; the means along every axis are near zero."
@@ -160,12 +161,12 @@ def draw(shown: Shown, comparison: Comparison, name: str) -> None:
 
 
 def sentence(words: str) -> str:
-    """Return the text with a capital letter and a full stop."""
+    """Return a text with a capital letter and a full stop."""
     return f"{words[0].upper()}{words[1:]}."
 
 
 def page(drawn: bool) -> str:
-    """Return the page, and draw the pictures if `drawn`."""
+    """Return the text of docs/why/failures.md; also draw its pictures if `drawn`."""
     parts = [HEAD]
     for shown in SHOWN:
         comparison = compared(shown)

@@ -1,6 +1,7 @@
 """Draw each base law for docs/laws.md: `.venv/bin/python docs/laws.py`.
 
-Friction against speed and against position under a sine of 1 rad/s, and the steady curve.
+A picture shows friction against speed and against position for a sine of 1 rad/s, and the steady
+friction.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ VALUES = {
     "elasto_plastic": {"F_c": 5.0, "sigma_0": 1e3, "F_v": 20.0},
     "rate_and_state": {"F_0": 5.0, "a": 0.2, "b": 0.5, "D_c": 0.01, "F_v": 20.0},
 }
-"""Parameters of each law.
+"""Parameters of each law in its picture.
 
 Parameters without an entry have the first starting value of the catalogue. The bristles are
 compliant, so that their deflection is visible.
@@ -35,7 +36,7 @@ LINE, STEADY = "#0072B2", "0.45"
 
 
 def figure_of(law: str) -> Figure:
-    """Plot the loops of a law."""
+    """Plot the friction of a law against speed and position."""
     bearing = "journal" in law
     time_s = np.linspace(0.0, 4.0 * np.pi, 6001)
     speed = SPEED_M_S * np.sin(time_s)
@@ -61,7 +62,7 @@ def figure_of(law: str) -> Figure:
 
 
 def main() -> None:
-    """Write the pictures."""
+    """Write one picture per law to docs/images."""
     IMAGES.mkdir(exist_ok=True)
     for law in laws():
         figure_of(law).savefig(IMAGES / f"{law}.png", dpi=80)

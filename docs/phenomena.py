@@ -21,13 +21,13 @@ RIG = jbf.Rig()
 
 
 def motion(time_s: np.ndarray, position_m: np.ndarray) -> jbf.Run:
-    """Return a motion along a line."""
+    """Return a motion along a line as a run without friction."""
     speed = np.gradient(position_m, time_s)
     return jbf.Run.from_arrays(time_s, speed, position_m=position_m)
 
 
 def stribeck(ax: Axes) -> None:
-    """Draw the steady Stribeck curve and its parts."""
+    """Draw a steady Stribeck curve and its parts."""
     v = np.linspace(1e-5, 0.1, 1000)
     law = jbf.Model(RIG, "stribeck", parameters=STRIBECK)
     ax.plot(1e3 * v, law.steady_friction(v), color="tab:red", label="Stribeck curve")

@@ -1,4 +1,4 @@
-"""Make the pictures of README and of docs/pictures.md: `.venv/bin/python docs/pictures.py`."""
+"""Draw the pictures of README and of docs/pictures.md: `.venv/bin/python docs/pictures.py`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SMALL = (6.4, 3.6)
 
 
 def main() -> None:
-    """Make the README's picture, and one for each function of `jbf.plot`."""
+    """Draw the picture of the README, and one for each function of `jbf.plot`."""
     rig, runs = jbf.read_rig(DEMO / "rig.toml"), jbf.read_runs(DEMO)
     diagnosis = jbf.diagnose(rig, runs)
     figure = Figure(figsize=(11.0, 7.0), layout="constrained")
@@ -34,7 +34,7 @@ def main() -> None:
 
 
 def each(diagnosis: jbf.Diagnosis) -> dict[str, Callable[[Axes], Axes]]:
-    """Return a drawing function for each function of `jbf.plot`."""
+    """Return the functions that draw a diagnosis with each function of `jbf.plot`, by name."""
     before, after = diagnosis.before, diagnosis.after
     loop = control.run(None, "observed", control.TASKS["velocity sine"])
     plot = jbf.plot

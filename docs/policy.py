@@ -26,13 +26,13 @@ ROWS = "| name | default | decides | source |\n| --- | --- | --- | --- |\n"
 
 
 def page() -> str:
-    """Return the page."""
+    """Return the text of docs/reference/policy.md."""
     policy = Policy()
     return HEAD + _table(policy, "", "The user's choice") + "".join(_sections(policy, ""))
 
 
 def _sections(section: Any, before: str) -> list[str]:
-    """Return the tables of all sections within one, in order."""
+    """Return the tables of all sections in a part of the policy, in order."""
     sections = []
     for f in fields(section):
         value = getattr(section, f.name)

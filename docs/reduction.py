@@ -1,4 +1,4 @@
-"""Draw the map of the reduction's error: `.venv/bin/python docs/reduction.py`."""
+"""Draw the error of the model without inertia: `.venv/bin/python docs/reduction.py`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TITLES = {"journal": "journal clock, $U_{tr}/R$", "thesis": "thesis clock, 1 s$^
 
 
 def main() -> None:
-    """Plot the largest difference relative to the loop's peak, in one panel per clock."""
+    """Plot the largest error relative to the peak of the loop, in one panel per time scale."""
     printed = subprocess.run(COMMAND, check=True, capture_output=True, text=True, cwd=HERE.parent)
     rows = list(csv.DictReader(printed.stdout.splitlines()))
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")

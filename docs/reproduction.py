@@ -1,7 +1,7 @@
 """Draw the figure of docs/why/reproduction.md: `.venv/bin/python docs/reproduction.py`.
 
-Stribeck curves of the thesis's four parameter sets, and loops of reversing motion under 104 N with
-both clocks.
+The figure shows Stribeck curves for the four parameter sets of Cohn (1998), and loops of reversing
+motion under 104 N with both time scales of the film.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from matplotlib.figure import Figure
 
 IMAGES = Path(__file__).resolve().parent / "images"
 TABLES = {"4.2": (0.06, 7.5e5), "4.3": (0.05, 6.25e5), "4.4": (0.05, 6.25e5), "4.5": (0.05, 4.5e5)}
-"""U_tr (m/s) and K0 of each table; f_m and gamma are the same for all."""
+"""U_tr (m/s) and K0 of Tables 4.2 to 4.5 of Cohn (1998); f_m and gamma are the same for all."""
 FREQUENCIES_RAD_S = (0.1, 0.5, 2.0)
 AMPLITUDE_M_S = 0.127
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")
 
 
 def model(table: str, clock: str = "journal") -> jbf.Model:
-    """Return the model of the bearing of a table with its parameters."""
+    """Return the model of the bearing with the parameters of a table of Cohn (1998)."""
     u_tr, k0 = TABLES[table]
     values = {"f_m": 0.26, "gamma": 33.0, "U_tr_m_s": u_tr, "K0": k0}
     return jbf.Model(jbf.Rig.thesis(table), clock=clock, parameters=values)
@@ -31,7 +31,7 @@ def model(table: str, clock: str = "journal") -> jbf.Model:
 def loop(
     of: jbf.Model, frequency_rad_s: float
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Speed and friction coefficient over the second period of a sine through zero."""
+    """Return speed and friction coefficient over the second period of a sinusoidal speed."""
     period_s = 2.0 * np.pi / frequency_rad_s
     time_s = np.linspace(0.0, 2.0 * period_s, 4001)
     speed = AMPLITUDE_M_S * np.sin(frequency_rad_s * time_s)
@@ -41,7 +41,7 @@ def loop(
 
 
 def main() -> None:
-    """Write the picture."""
+    """Draw and write the figure."""
     figure = Figure(figsize=(11.0, 3.6), layout="constrained")
     steady, journal, thesis = figure.subplots(1, 3)
     speeds = np.geomspace(1e-4, 0.2646, 200)

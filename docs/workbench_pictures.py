@@ -1,6 +1,7 @@
 """Make the pictures of docs/workbench.md: `.venv/bin/python docs/workbench_pictures.py`.
 
-The workbench with the demo data in a headless Chromium (Debian: `apt-get install chromium`).
+The program shows the workbench with the demo data in a headless Chromium (Debian: `apt-get install
+chromium`).
 """
 
 from __future__ import annotations
@@ -22,20 +23,20 @@ if TYPE_CHECKING:
 
 
 def shot(page: Page, name: str) -> None:
-    """Save a screenshot of the window."""
+    """Save a screenshot of the page under a name."""
     page.wait_for_timeout(1500)
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     picture.save(HERE / "images" / f"workbench_{name}.png", optimize=True)
 
 
 def models(page: Page, count: int) -> None:
-    """Wait until there are `count` models and no task runs."""
+    """Wait until the workbench has `count` models and no task runs."""
     page.wait_for_selector(f"#models .item:nth-of-type({count + 1}) [data-key^=model-]")
     page.wait_for_selector("[data-key=cancel]", state="detached")
 
 
 def main() -> int:
-    """Take the pictures, page by page."""
+    """Take the pictures of all pages of the workbench."""
     if why_not() is not None:
         print(f"SKIPPED: {why_not()}")
         return 1

@@ -20,11 +20,11 @@ LEXERS = {".rs": "rust", ".py": "python", ".toml": "toml", ".h": "c", ".c": "c",
 
 
 class Broken(Exception):
-    """A link without a target."""
+    """Error for a link without a target."""
 
 
 class Source:
-    """The folder from which the site is built."""
+    """Folder from which the site is built, with the pages collected in it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -32,7 +32,7 @@ class Source:
         self.broken: list[str] = []
 
     def place(self, page: Path) -> str:
-        """Return the path of a repository file in the site."""
+        """Return the path in the site of a file of the repository."""
         if page.is_dir():
             # A folder is represented by its README, a program by its main module.
             page = next(
@@ -83,7 +83,7 @@ class Source:
         path.write_text(text, encoding="utf-8")
 
     def show(self) -> None:
-        """Write a page for each source file that pages link to."""
+        """Write a page for each source file to which pages link."""
         for path, place in self.shown.items():
             name = path.relative_to(ROOT).as_posix()
             lexer = LEXERS.get(path.suffix, "text")
@@ -94,7 +94,7 @@ class Source:
 
 
 def assemble(folder: Path) -> list[str]:
-    """Fill the folder and return the broken links."""
+    """Collect all pages in a folder and return the broken links."""
     shutil.rmtree(folder, ignore_errors=True)
     source = Source(folder)
     for path in sorted(DOCS.rglob("*")):

@@ -1,8 +1,8 @@
 """Build the site: `.venv/bin/python docs/site/build.py`, into `target/site/html`.
 
-Collects the pages, runs the notebooks, builds the site in strict mode (a warning is an error), and
-adds the documentation of the crates. Checks the result for broken links and anchors and for
-external resources.
+The program collects the pages, runs the notebooks, builds the site in strict mode (a warning is an
+error), and adds the documentation of the crates. It checks the result for broken links and anchors
+and for external resources.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def rust(folder: Path) -> None:
 
 
 def main() -> int:
-    """Build the site; the exit code is not 0 if there are faults."""
+    """Build and check the site; return an exit code other than 0 if there are faults."""
     broken = assemble(SITE / "source")
     for line in broken:
         print(line, file=sys.stderr)

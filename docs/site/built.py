@@ -1,4 +1,4 @@
-"""Check the built pages: each link and anchor has a target, and no external resource is loaded."""
+"""Check the built site: each link and anchor has a target, and no external resource is loaded."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ LOADS = {
     "video": "src",
 }
 NO_LOAD = {"canonical", "prev", "next", "license", "author"}
-"""Relations of a `link` that refer to a page without loading it."""
+"""Values of `rel` with which a `link` element refers to a page without loading it."""
 
 
 class Page(HTMLParser):
-    """The links, loads and anchors of a page."""
+    """Parser that collects the links, loaded resources and anchors of a page."""
 
     def __init__(self, text: str) -> None:
         super().__init__(convert_charrefs=True)
@@ -29,7 +29,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Record the links, loads and anchors of a tag."""
+        """Collect the links, loaded resources and anchors of a tag."""
         of = {name: value or "" for name, value in attrs}
         self.anchors |= {of[name] for name in ("id", "name") if name in of}
         if tag == "a" and "href" in of:
@@ -40,12 +40,12 @@ class Page(HTMLParser):
 
 
 def outside(address: str) -> bool:
-    """Whether an address is on another machine."""
+    """Return True if an address is on another machine."""
     return bool(urlsplit(address).netloc) or urlsplit(address).scheme in ("http", "https", "ftp")
 
 
 def faults(folder: Path, skip: tuple[str, ...] = ()) -> list[str]:
-    """List the faults in the pages of a site; pages under `skip` are link targets only."""
+    """Return the faults in the pages of a site; pages under `skip` are only link targets."""
     pages = {
         path: Page(path.read_text(encoding="utf-8"))
         for path in sorted(folder.rglob("*.html"))

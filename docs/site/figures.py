@@ -33,7 +33,7 @@ SCRIPTS = {
     "docs/site/commands.py": ("reference/commands.md",),
     "docs/policy.py": ("reference/policy.md",),
 }
-"""Files written by each script, relative to docs."""
+"""Names of the files that each script writes, relative to docs."""
 NOT_ANEW = {
     "images/detection.png": "`benches/hidden_effects --seeds 1 --first-seed 701`, a day of "
     "campaigns, commit 784478f",
@@ -47,12 +47,12 @@ runs all of them and writes this page. Numbers in the text have their own comman
 
 
 def said(*command: str) -> str:
-    """Return the output of a command."""
+    """Run a command and return its output."""
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
 
 
 def commit() -> str:
-    """Return the commit, marked if the sources of the figures differ from it."""
+    """Return the present commit, with a mark if the sources of the figures differ from it."""
     changed = said("git", "status", "--porcelain", "python", "crates", "docs/*.py", "simulator")
     return said("git", "rev-parse", "--short", "HEAD").strip() + (
         " with changes" if changed else ""
@@ -60,7 +60,7 @@ def commit() -> str:
 
 
 def machine() -> str:
-    """Describe processor, cores and Python version."""
+    """Describe the processor, its cores and the Python version of this machine."""
     info = Path("/proc/cpuinfo")
     named = [
         line.partition(":")[2].strip()
@@ -72,13 +72,13 @@ def machine() -> str:
 
 
 def brought(names: tuple[str, ...]) -> str:
-    """Return the commit that last changed the files of a script, and its date."""
+    """Return the last commit that changed the files of a script, and its date."""
     paths = [f"docs/{name}" for name in names]
     return said("git", "log", "-1", "--format=%h, %as", "--", *paths).strip()
 
 
 def write(rows: list[tuple[str, tuple[str, ...], str]], note: str) -> None:
-    """Write the page."""
+    """Write docs/reference/figures.md."""
     lines = ["| file in `docs` | command | commit |", "| --- | --- | --- |"]
     for script, names, source in rows:
         shown = ", ".join(f"`{name}`" for name in names)

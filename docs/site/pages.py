@@ -1,4 +1,4 @@
-"""The pages of the documentation: text, code blocks, links, and their paths in the site."""
+"""Pages of the documentation: text, code blocks, links, and their paths in the site."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ OUTSIDE = {
     "crates/jbf-c/README.md": "reference/jbf_c.md",
     "examples/firmware/README.md": "project/firmware.md",
 }
-"""Pages stored next to their subject, and their paths in the site."""
+"""Paths in the site of pages that are stored next to their subject."""
 
 FENCE = re.compile(
     r"^(?P<ticks>`{3,})(?P<info>[^`\n]*)\n(?P<body>.*?)^(?P=ticks)[ \t]*$", re.M | re.S
 )
 NOTE = re.compile(r"<!--((?:(?!-->).)*)-->\s*\Z", re.S)
-"""An HTML comment that ends a text."""
+"""Pattern of an HTML comment at the end of a text."""
 TITLE = re.compile(r'title="([^"]*)"')
 LINK = re.compile(r"(?P<head>!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()(?P<target>[^)\s]+)(?P<tail>\))")
 
 
 @dataclass(frozen=True)
 class Block:
-    """A code block: its language, the name of its file, its text and its line.
+    """Code block of a page: its language, the name of its file, its text and its line.
 
     `note` is the HTML comment directly above the block.
     """
@@ -53,7 +53,7 @@ def every_page() -> list[Path]:
 
 
 def name_of(page: Path) -> str:
-    """Return a page's path relative to the root of the repository."""
+    """Return the path of a page relative to the root of the repository."""
     return page.resolve().relative_to(ROOT).as_posix()
 
 
@@ -79,7 +79,7 @@ def blocks(text: str) -> list[Block]:
 
 
 def prose(text: str) -> str:
-    """Return a page with its code replaced by blanks, so that code contains no links."""
+    """Return a page with its code blocks replaced by blanks, because code contains no links."""
     blank = re.compile(r"[^\n]")
     text = FENCE.sub(lambda match: blank.sub(" ", match[0]), text)
     return re.sub(r"(`+)(?:(?!\1).)+?\1", lambda m: "`" * len(m[0]), text)

@@ -43,15 +43,15 @@ SIMULATOR, SOURCE = ROOT / "simulator", ROOT / "python"
 DEMO = SOURCE / "jbf" / "data" / "demo" / "hidden"
 WHY = re.compile(r"not tested: \S+ \S+ \S+")
 SECONDS = 1800
-"""A shell block that takes longer is considered to hang; a busy machine is slow."""
+"""Time after which a shell block is considered to hang, s."""
 
 
 class Wrong(Exception):
-    """A page whose code does not give the shown result."""
+    """Error for a page whose code does not have the shown result."""
 
 
 def _campaign(folder: Path) -> None:
-    """Copy the shipped data: a rig with its runs, further runs, planned runs, and models."""
+    """Copy the shipped campaign to a folder: a rig, its runs, further and planned runs, models."""
     import jbf
 
     shutil.copy(DEMO / "rig.toml", folder / "rig.toml")
@@ -71,7 +71,7 @@ def _campaign(folder: Path) -> None:
 
 
 def _warm_campaign(folder: Path) -> None:
-    """Copy the same rig with rising temperature and a seal whose friction grows with it."""
+    """Copy the shipped campaign with rising temperature and a seal whose friction depends on it."""
     import jbf
     import numpy as np
 
@@ -92,12 +92,12 @@ def _warm_campaign(folder: Path) -> None:
 
 
 def _schema(folder: Path) -> None:
-    """Copy the published schema."""
+    """Copy the published JSON schema to a folder."""
     shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
 
 
 def _effect(folder: Path, name: str) -> None:
-    """Write runs with an effect."""
+    """Write runs with the effect `name` to a folder."""
     sys.path.insert(0, str(DOCS))
     import effects
 
@@ -114,12 +114,12 @@ IN_A_CLONE = "# in a clone of the repository"
 
 
 def squeezed(text: str) -> str:
-    """Collapse whitespace to single blanks."""
+    """Collapse the whitespace in a text to single blanks."""
     return " ".join(text.split())
 
 
 def compare(shown: str, output: str) -> None:
-    """Check that the shown lines occur in the output in this order."""
+    """Raise `Wrong` unless the shown lines occur in the output in this order."""
     lines, at = [squeezed(line) for line in output.splitlines()], 0
     for wanted in (squeezed(line) for line in shown.splitlines()):
         if wanted in ("", "..."):
@@ -133,7 +133,10 @@ def compare(shown: str, output: str) -> None:
 
 
 def not_tested(note: str) -> bool:
-    """Whether a block's note marks it as not tested; the reason must have three words or more."""
+    """Return True if the comment of a block marks it as not tested and gives a reason.
+
+    The reason must have three words or more.
+    """
     if not note.startswith("not tested"):
         return False
     if not WHY.match(note):
@@ -142,7 +145,7 @@ def not_tested(note: str) -> bool:
 
 
 def missing(page: Path) -> list[str]:
-    """Return what a page needs and this machine lacks: programs and Rust targets."""
+    """Return the programs and Rust targets that a page needs and this machine lacks."""
     requirements = re.findall(r"<!-- needs: (.*?) -->", page.read_text(encoding="utf-8"))
     return [name for name in " ".join(requirements).split() if not _is_there(name)]
 
@@ -158,7 +161,7 @@ def _is_there(name: str) -> bool:
 
 
 class Reader:
-    """Runs the blocks of a page in sequence."""
+    """Reader that runs the code blocks of a page in their order."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -166,7 +169,7 @@ class Reader:
         self.said: str | None = None
 
     def follow(self, block: Block) -> None:
-        """Execute a block."""
+        """Run a code block, and compare its output if the page shows it."""
         if not_tested(block.note):
             self.said = None
         elif block.title:
@@ -185,7 +188,7 @@ class Reader:
             raise Wrong(f"`{block.language}` is neither run nor a file (title=)")
 
     def python(self, block: Block) -> str:
-        """Return the output of a Python block."""
+        """Run a Python block and return its output."""
         printed = io.StringIO()
         # Line numbers of a traceback are those of the page.
         code = compile("\n" * block.row + block.body, "the page", "exec")
@@ -199,7 +202,7 @@ class Reader:
         return printed.getvalue()
 
     def shell(self, body: str) -> str:
-        """Return the output of a shell block; the next block starts in its last folder."""
+        """Run a shell block and return its output; the next block starts in its last folder."""
         place = self.folder / ".folder"
         script = f'{body}\npwd > "{place}"'
         bin_ = Path(sys.executable).parent
@@ -229,7 +232,7 @@ class Reader:
 
 
 def run(page: Path, keep: Path | None = None) -> None:
-    """Run a page; raises `Wrong` with the row."""
+    """Run all code blocks of a page; raise `Wrong` with the line of the page."""
     text = page.read_text(encoding="utf-8")
     name = name_of(page)
     with tempfile.TemporaryDirectory() as temporary:

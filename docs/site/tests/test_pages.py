@@ -1,4 +1,4 @@
-"""Code blocks of every page run with the shown output; relative links lead to files."""
+"""Tests that code blocks of every page have the shown output, and relative links lead to files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reference pages are complete and up to date."""
+"""Tests that the reference pages are complete and up to date."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The built site: no broken links, no external requests, and a search that works offline."""
+"""Tests of the built site: no broken links, no external requests, and an offline search."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Source archive and wheel, the same bytes wherever they are built with the same tools.
+"""Build the source archive and the wheel, reproducibly with the same tools.
 
 `python release/build.py --out dist` packs the source archive, unpacks it in an empty folder and
 builds the wheel from there, so that the wheel contains only files of the archive. `--target
@@ -21,13 +21,13 @@ from steps import ROOT, clean_environment, run, say
 MATURIN = (sys.executable, "-m", "maturin")
 BUILD_FOLDER = "jbf-build-"
 EPOCH = "315532800"
-"""1980, the first date that a zip file can store: used if git is not available."""
+"""Date of a build if git is not available: 1980, the first date that a zip file can store."""
 
 
 def build_environment(source: Path) -> dict[str, str]:
-    """Environment of a reproducible build.
+    """Return the environment variables of a reproducible build.
 
-    The date is that of the commit, and the binary contains no path of this machine.
+    The date is that of the commit, and the binary does not contain paths of this machine.
     """
     environment = clean_environment()
     cargo = Path(environment.get("CARGO_HOME", Path.home() / ".cargo"))
@@ -50,7 +50,7 @@ def _commit_date() -> str:
 
 
 def pack(out: Path) -> Path:
-    """Build the source archive."""
+    """Build the source archive in the folder `out` and return its path."""
     # Run as a file: importing the package needs the extension, which is not built yet.
     run([sys.executable, ROOT / "python/jbf/workbench/vendored.py"], cwd=ROOT)
     # Not `--sdist` of `maturin build`, which uses a folder with a different name each time.
@@ -59,7 +59,7 @@ def pack(out: Path) -> Path:
 
 
 def build(archive: Path, out: Path, extra: list[str]) -> Path:
-    """Build the wheel of a source archive in an empty folder."""
+    """Build the wheel from a source archive in an empty folder and return its path."""
     with tempfile.TemporaryDirectory(prefix=BUILD_FOLDER) as folder:
         with tarfile.open(archive) as tar:
             tar.extractall(folder, filter="data")
@@ -73,7 +73,7 @@ def build(archive: Path, out: Path, extra: list[str]) -> Path:
 
 
 def main() -> None:
-    """Run the command line."""
+    """Build the archive and the wheel for the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "dist")
     parser.add_argument("--target", help="Rust's name of another machine; linked by zig")

@@ -1,7 +1,7 @@
-"""The licences of what is linked into a wheel: THIRD_PARTY.md, which every wheel brings along.
+"""Write the licences of the code that is linked into a wheel: THIRD_PARTY.md.
 
-`python release/licences.py` writes it from the crates that cargo fetched and from the notices of
-the Rust toolchain. `--check` only checks that every crate of Cargo.lock that a wheel links is
+`python release/licences.py` writes the file from the crates that cargo fetched and from the notices
+of the Rust toolchain. `--check` only checks that every crate of Cargo.lock that a wheel links is
 listed correctly.
 """
 
@@ -30,7 +30,7 @@ docs/dependencies.md.
 
 @dataclass(frozen=True)
 class Library:
-    """A linked library, with the notice that its licence requires."""
+    """Linked library, with the licence notice that must be distributed."""
 
     name: str
     version: str
@@ -39,12 +39,15 @@ class Library:
 
     @property
     def row(self) -> str:
-        """Row of the table."""
+        """Row of the library in the table."""
         return f"| `{self.name}` | {self.version} | {self.licence} |"
 
 
 def linked() -> list[Library]:
-    """Crates of the extension on any machine; macros and build scripts are not in the binary."""
+    """Return the crates that the extension links on any machine.
+
+    Macros and build scripts are not included, because they are not in the binary.
+    """
     tree = "cargo tree --locked -p jbf-py --edges normal,no-proc-macro --target all --prefix none"
     told = run([*tree.split(), "--format", "{p}"], cwd=ROOT, quiet=True)
     wanted = {(m[1], m[2]) for m in re.finditer(r"^(\S+) v(\S+)", told, re.MULTILINE)}
@@ -65,7 +68,7 @@ def _spdx(licence: str) -> str:
 
 
 def _notice(package: dict[str, str]) -> str:
-    """Return the text of the selected licence: MIT if there is a choice."""
+    """Return the text of the selected licence of a package: MIT if there is a choice."""
     folder = Path(package["manifest_path"]).parent
     files = sorted(p for p in folder.iterdir() if re.match(r"(?i)licen[cs]e|copying", p.name))
     chosen = [p for p in files if "MIT" in p.name.upper()] or [p for p in files if p.is_file()]
@@ -95,7 +98,7 @@ def standard_library() -> tuple[str, list[Library]]:
 
 
 def written() -> str:
-    """Return the page."""
+    """Return the text of THIRD_PARTY.md."""
     version, standard = standard_library()
     crates = linked()
     table = "| library | version | licence |\n| --- | --- | --- |\n"
@@ -116,7 +119,7 @@ def written() -> str:
 
 
 def main() -> None:
-    """Run the command line."""
+    """Write or check THIRD_PARTY.md for the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true")
     if not parser.parse_args().check:

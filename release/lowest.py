@@ -1,4 +1,4 @@
-"""Do the oldest versions that pyproject.toml allows still do?
+"""Test a wheel with the oldest versions of its dependencies that pyproject.toml allows.
 
 `python release/lowest.py dist` installs the wheel with each direct dependency at its lowest allowed
 version (`uv pip install --resolution lowest-direct`), extras included, on Python 3.10 if available.
@@ -22,11 +22,11 @@ from wheel_test import TESTS, TOOLS, find_wheel, run_tests
 EXTRAS = ("formats", "workbench")
 TESTS_OF_EXTRAS = ("importing/test_formats", "workbench/test_guard", "workbench/test_session")
 FROM_SOURCE = ("mat-io",)
-"""Pure Python packages without wheels."""
+"""Packages in pure Python that have no wheels."""
 
 
 def oldest_python() -> str:
-    """Return Python 3.10, or this interpreter."""
+    """Return the path of Python 3.10, or of this interpreter if it is not available."""
     # pyenv's command of that name does nothing unless the version is selected.
     kept = sorted(Path.home().glob(".pyenv/versions/3.10.*/bin/python3.10"))
     for found in [shutil.which("python3.10"), *map(str, kept)]:
@@ -37,7 +37,7 @@ def oldest_python() -> str:
 
 
 def check_floors(installed: dict[str, str]) -> None:
-    """Fail if a lowest version was not installed because this Python has no such version."""
+    """Fail if a lowest version was not installed because it does not support this Python."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     kept = text[text.index("\ndependencies") : text.index("\ndev = ")]
     wrong = []
@@ -50,7 +50,7 @@ def check_floors(installed: dict[str, str]) -> None:
 
 
 def main() -> None:
-    """Run the command line."""
+    """Install the wheel and run the tests for the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("dist", type=Path, help="a wheel, or the folder of one")
     parser.add_argument("--python", default=oldest_python())

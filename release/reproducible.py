@@ -1,4 +1,4 @@
-"""Is it the same wheel, built again in another folder?
+"""Test that the source archive and the wheel are identical if they are built in another folder.
 
 `python release/reproducible.py dist` builds the source archive and the wheel again, in folders with
 names of other lengths, and compares them with those in `dist`, byte by byte.
@@ -18,12 +18,12 @@ from steps import say
 
 
 def sha256(path: Path) -> str:
-    """SHA-256 checksum of a file."""
+    """Return the SHA-256 checksum of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def differing(first: Path, second: Path) -> list[str]:
-    """Names in two wheels whose content, date or permissions differ."""
+    """Return the names of the files whose content, date or permissions differ in two wheels."""
     with zipfile.ZipFile(first) as one, zipfile.ZipFile(second) as other:
         members = [
             {i.filename: (a.read(i), i.date_time, i.external_attr) for i in a.infolist()}
@@ -34,7 +34,7 @@ def differing(first: Path, second: Path) -> list[str]:
 
 
 def main() -> None:
-    """Run the command line."""
+    """Build again and compare for the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("dist", type=Path)
     parser.add_argument("extra", nargs="*", help="for maturin, as for the wheel in DIST (after --)")

@@ -13,11 +13,11 @@ _LEAKS = (
     "PYTHON", "VIRTUAL_ENV", "CONDA", "PYTEST", "COVERAGE", "RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS",
     "CARGO_BUILD_", "CARGO_PROFILE_", "CARGO_TARGET_", "CARGO_INCREMENTAL", "MATURIN_", "PYO3_",
 )  # fmt: skip
-"""Prefixes of variables that would affect a build or a test."""
+"""Prefixes of environment variables that would affect a build or a test."""
 
 
 def clean_environment() -> dict[str, str]:
-    """This process's environment, without variables for source trees, environments or flags."""
+    """Return the environment of this process without variables that affect a build or a test."""
     return {k: v for k, v in os.environ.items() if not k.startswith(_LEAKS)}
 
 
@@ -52,7 +52,7 @@ def run(
 
 
 def make_environment(folder: Path, python: str = sys.executable) -> Path:
-    """Create a new virtual environment; returns its interpreter."""
+    """Create a new virtual environment and return the path of its interpreter."""
     # Use the base interpreter, not a virtual environment that contains it.
     base = run([python, "-c", "import sys; print(sys._base_executable)"], cwd=ROOT, quiet=True)
     run([base.strip(), "-m", "venv", folder], cwd=ROOT, quiet=True)
@@ -60,7 +60,7 @@ def make_environment(folder: Path, python: str = sys.executable) -> Path:
 
 
 def tracked_files() -> list[Path]:
-    """Files tracked by git and new files that are not ignored, relative to the root."""
+    """Return the files that git tracks or would add, relative to the root."""
     listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
     names = run(listed, cwd=ROOT, quiet=True).split("\0")
     return [Path(name) for name in names if name and (ROOT / name).is_file()]

@@ -1,8 +1,8 @@
-"""Test a wheel as a user gets it: install it from the package alone, run a diagnosis and the tests.
+"""Test a wheel as a user installs it: install it, run a diagnosis, and run the tests.
 
-`python release/wheel_test.py dist/*.whl`. Uses a new environment in a separate folder, and compiles
-nothing (`--only-binary`). The tests are copied there without the package, so that they can import
-only the installed one.
+`python release/wheel_test.py dist/*.whl`. The program uses a new environment in a separate folder,
+and compiles nothing (`--only-binary`). The tests are copied to this folder without the package, so
+that they import the installed one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TESTS = (
     "project/test_lazy_imports", "records/test_channels", "records/test_rig",
     "records/test_run", "reporting/test_text_reports",
 )  # fmt: skip
-"""Some tests of each package, in a minute or two; none needs an extra or the rest of the tree."""
+"""Test files of each package that need no extra and no other files, and take a minute or two."""
 COPIED = ("python/tests/", "simulator/", "benches/", "pyproject.toml")
 TOOLS = ("pytest>=8", "hypothesis>=6.100", "filelock>=3.12")
 MUST_HOLD = (
@@ -44,7 +44,7 @@ MUST_HOLD = (
 
 
 def find_wheel(place: Path) -> Path:
-    """Return a wheel, or the only one in a folder."""
+    """Return the path of a wheel, given itself or as the only one in a folder."""
     wheels = sorted(place.glob("*.whl")) if place.is_dir() else [place]
     if len(wheels) != 1 or not wheels[0].is_file():
         sys.exit(f"{place} is neither a wheel nor a folder of one")
@@ -52,7 +52,7 @@ def find_wheel(place: Path) -> Path:
 
 
 def check_contents(wheel: Path) -> None:
-    """Check the required files of a wheel, and that it contains no others."""
+    """Check that a wheel contains the required files and no others."""
     with zipfile.ZipFile(wheel) as archive:
         contents = {name: archive.read(name) for name in archive.namelist()}
     for wanted in MUST_HOLD:
@@ -67,7 +67,7 @@ def check_contents(wheel: Path) -> None:
 
 
 def first_diagnosis(python: Path, wheel: Path, folder: Path) -> None:
-    """Install and diagnose; exit if jbf is imported from elsewhere or fails."""
+    """Install the wheel and run a diagnosis; exit if it fails or imports another jbf."""
     start, before = time.monotonic(), os.times()
     install = [python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", wheel]
     run(install, cwd=folder)
@@ -111,7 +111,7 @@ def run_tests(python: Path, folder: Path, tests: list[str]) -> None:
 
 
 def main() -> None:
-    """Run the command line."""
+    """Test the wheel for the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("wheel", type=Path, help="a wheel, or the folder of one")
     parser.add_argument("--python", default=sys.executable, help="another interpreter to test with")

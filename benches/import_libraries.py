@@ -272,7 +272,7 @@ def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
     clevercsv, duckdb = library("clevercsv"), library("duckdb")
 
     def header_found(answer: bool, text: Text) -> bool:
-        """Return True if the detected presence of a header is right and locates the row of names."""
+        """Return True if the detected presence of a header is right and locates its row."""
         return text.header < 2 and answer == (text.header == 1)
 
     def jbf_detector(path: Path, text: Text) -> Detected:

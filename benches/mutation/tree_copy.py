@@ -25,7 +25,7 @@ class TreeCopy:
 
     @cached_property
     def environment(self) -> dict[str, str]:
-        """Environment variables with which Python imports the copy and cargo builds apart from it."""
+        """Environment variables with which Python imports the copy and cargo builds separately."""
         parts = ("python", "simulator", "benches", "python/tests")
         return os.environ | {
             "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"])),

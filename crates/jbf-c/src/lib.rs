@@ -52,7 +52,7 @@ macro_rules! laws {
             /// Builds the law; see `jbf_LAW_TYPE_init` in `jbf.h`.
             ///
             /// # Safety
-            /// As [`model::init`].
+            /// Each pointer must be null, or valid as `jbf.h` requires.
             #[no_mangle]
             pub unsafe extern "C" fn $init(
                 model: *mut Chain<$kind, law::$module::$Type<$kind>>,
@@ -69,7 +69,7 @@ macro_rules! laws {
             /// Adds an effect to a model; see `jbf_LAW_TYPE_effect` in `jbf.h`.
             ///
             /// # Safety
-            /// As [`model::effect`].
+            /// Each pointer must be null, or valid as `jbf.h` requires.
             #[no_mangle]
             pub unsafe extern "C" fn $effect(
                 model: *mut Chain<$kind, law::$module::$Type<$kind>>,
@@ -84,7 +84,7 @@ macro_rules! laws {
             /// Sets the state of a model at the first sample; see `jbf_LAW_TYPE_start` in `jbf.h`.
             ///
             /// # Safety
-            /// As [`model::start`].
+            /// Each pointer must be null, or valid as `jbf.h` requires.
             #[no_mangle]
             pub unsafe extern "C" fn $start(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -97,7 +97,7 @@ macro_rules! laws {
             /// Advances a model by one step; see `jbf_LAW_TYPE_step` in `jbf.h`.
             ///
             /// # Safety
-            /// As [`model::step`].
+            /// Each pointer must be null, or valid as `jbf.h` requires.
             #[no_mangle]
             pub unsafe extern "C" fn $step(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -111,7 +111,7 @@ macro_rules! laws {
             /// Predicts the friction along a whole record; see `jbf_LAW_TYPE_predict` in `jbf.h`.
             ///
             /// # Safety
-            /// As [`model::whole`].
+            /// Each pointer must be null, or valid as `jbf.h` requires.
             #[no_mangle]
             pub unsafe extern "C" fn $predict(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,

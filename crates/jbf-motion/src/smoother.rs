@@ -2,8 +2,7 @@
 
 use crate::model::{symmetric, Square, State, Transition, Update};
 
-/// Recorded motion at n instants with error variances; a reading with an infinite variance is
-/// missing.
+/// Recorded motion at n instants; a reading with an infinite error variance is missing.
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
     /// Instants, s, not decreasing; shape (n,).
@@ -57,8 +56,7 @@ pub struct Smoothed<const N: usize> {
     pub log_likelihood: f64,
 }
 
-/// Computes the posterior distribution of a motion of order N, whose N-th derivative is white
-/// noise.
+/// Computes the posterior of a motion of order N, whose N-th derivative is white noise.
 ///
 /// # Arguments
 /// * `intensity`: intensity of the process noise in each of the n - 1 steps, (m/s^N)^2 s.
@@ -229,8 +227,7 @@ impl TimeScale {
         [position, late_velocity(readings.velocity_delay / self.unit)]
     }
 
-    /// Coefficients of the linear reading at instant k as a function of the state; zero if there is
-    /// none.
+    /// Coefficients of the state in the linear reading at instant k; zero if there is none.
     fn linear_row<const N: usize>(&self, readings: &Readings, k: usize) -> State<N> {
         let mut row = State::zeros();
         if let Some(reading) = readings.linear.get(k) {

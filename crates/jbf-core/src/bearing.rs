@@ -91,14 +91,16 @@ impl Bearing {
         Ok(self)
     }
 
-    /// Load number (dimensionless load) `Fb = C^2 F / (mu U_tr L^3)`, equation (3.1).
+    /// Load number (dimensionless load) `Fb = C^2 F / (mu U_tr L^3)`, equation (3.1) of Cohn
+    /// (1998).
     pub fn load_number<T: Real>(&self, load_n: T, u_tr_m_s: T) -> T {
         let l3 = self.length_m * self.length_m * self.length_m;
         let group = self.clearance_m * self.clearance_m / (self.viscosity_pa_s * l3);
         T::of(group) * load_n / u_tr_m_s
     }
 
-    /// Mass number (dimensionless mass) `mb = C^3 U_tr m / (mu L^3 R^2)`, equation (3.4).
+    /// Mass number (dimensionless mass) `mb = C^3 U_tr m / (mu L^3 R^2)`, equation (3.4) of Cohn
+    /// (1998).
     pub fn mass_number<T: Real>(&self, u_tr_m_s: T) -> T {
         let l3 = self.length_m * self.length_m * self.length_m;
         let c3 = self.clearance_m * self.clearance_m * self.clearance_m;
@@ -106,7 +108,7 @@ impl Bearing {
         T::of(group) * u_tr_m_s
     }
 
-    /// Factor `C R / L^2` of the viscous friction in equation (3.14).
+    /// Factor `C R / L^2` of the viscous friction in equation (3.14) of Cohn (1998).
     pub fn viscous_ratio(&self) -> f64 {
         self.radius_m * self.clearance_m / (self.length_m * self.length_m)
     }

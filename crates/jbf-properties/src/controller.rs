@@ -130,7 +130,8 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     any(bytes, &Loop { drive, law, dt_s }, running)
 }
 
-/// Checks the property of this module, with any compensator.
+/// Checks that the output of a control loop with any compensator is finite and within its limit,
+/// for any counter and target.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

@@ -58,7 +58,8 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Checks the property of this module, with any number of bits.
+/// Checks that an encoder with any number of bits follows every possible motion, and reports every
+/// jump.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

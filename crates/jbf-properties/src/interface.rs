@@ -266,7 +266,8 @@ laws! {
         jbf_rate_and_state_f64_init jbf_rate_and_state_f64_effect jbf_rate_and_state_f64_start jbf_rate_and_state_f64_step jbf_rate_and_state_f64_predict;
 }
 
-/// Checks the property of this module, for any law in either precision.
+/// Checks that the C interface of any law, in either precision, has the results of `jbf_core`, and
+/// refuses invalid input.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     assert_eq!(RUNS.len(), jbf_c::SIZES.len());
     let run = bytes.choose(RUNS)?;

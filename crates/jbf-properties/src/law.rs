@@ -86,8 +86,8 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     .unwrap_or(Ok(()))
 }
 
-/// Checks the property of this module, for any parameters within their bounds and a motion with
-/// jumps of the speed.
+/// Checks that the friction of any law, with any valid parameters, resists a motion with jumps of
+/// the speed.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

@@ -70,7 +70,8 @@ fn coulomb<T: Real + Default>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Checks the property of this module, for both observers in either precision.
+/// Checks that the estimates of both observers, in either precision, stay within the bounds of
+/// their inputs.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     match bytes.int_in_range(0..=3)? {
         0 => velocity::<f32>(bytes),

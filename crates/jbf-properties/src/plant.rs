@@ -138,7 +138,8 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     with_law(page.name, bearing, Some(104.0), &values, clock, turning).unwrap_or(Ok(()))
 }
 
-/// Checks the property of this module, for any law and effects; voltages and loads jump.
+/// Checks that the motion of a shaft with any friction is finite, and that a step needs few trials,
+/// if voltages and loads jump.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

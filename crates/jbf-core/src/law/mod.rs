@@ -43,8 +43,8 @@ pub trait Law<T: Real> {
     /// State of the law in the course of a run.
     type State: Copy + Send + 'static;
 
-    /// True if friction depends on motion before the last step; false if any single step determines
-    /// it.
+    /// True if friction depends on motion before the last step; false if the last step, of any
+    /// length, determines the friction at its end.
     const HAS_MEMORY: bool = core::mem::size_of::<Self::State>() > 0;
 
     /// True if the law deflects before it slides; [`Law::bend`] then replaces the jump at a

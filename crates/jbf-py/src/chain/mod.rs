@@ -118,8 +118,9 @@ impl Chain {
         })
     }
 
-    /// Names of the parameters in the form `effect.parameter`, in the order of every array of this
-    /// class.
+    /// Names of the parameters, in the order of every array of this class.
+    ///
+    /// The parameters of the law come first. Those of an effect have the form `effect.parameter`.
     #[getter]
     fn parameter_names(&self) -> Vec<String> {
         let own = self.law.parameters.iter().map(|p| p.name.to_string());

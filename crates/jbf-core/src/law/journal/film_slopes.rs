@@ -96,8 +96,8 @@ pub(super) fn motion<T: Real>(
     ]
 }
 
-/// Friction coefficient, (3.14), from `f_m`, `gamma (C R/L^2) 2 pi / U_tr` and `1/Fb`, with
-/// combined derivatives.
+/// Friction coefficient, equation (3.14) of Cohn (1998), from `f_m`, `gamma (C R/L^2) 2 pi / U_tr`
+/// and `1/Fb`, with combined derivatives.
 #[inline(always)]
 pub(super) fn sliding<T: Real>(
     [f_m, viscous_s_m, per_load]: [T; 3],

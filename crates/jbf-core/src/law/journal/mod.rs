@@ -111,8 +111,8 @@ impl<T: Real> Journal<T> {
         Asperities { k0, eps_tr, part }.load(eps)
     }
 
-    /// Friction coefficient, (3.14), at a speed (m/s, signed) and an eccentricity ratio, given by
-    /// its square `e2`.
+    /// Friction coefficient, equation (3.14) of Cohn (1998), at a speed (m/s, signed) and an
+    /// eccentricity ratio, given by its square `e2`.
     #[inline(always)]
     pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Friction<T> {
         let asperities = self.asperities(loaded);

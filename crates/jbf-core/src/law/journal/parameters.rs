@@ -55,9 +55,9 @@ pub struct Parameters<T> {
     pub f_m: T,
     /// Transition speed from mixed to full film, m/s.
     pub u_tr_m_s: T,
-    /// Asperity stiffness constant, -, equation (3.16).
+    /// Asperity stiffness constant, -, equation (3.16) of Cohn (1998).
     pub k0: T,
-    /// Slope factor of the viscous term, -, equation (3.14).
+    /// Slope factor of the viscous term, -, equation (3.14) of Cohn (1998).
     pub gamma: T,
 }
 
@@ -92,7 +92,8 @@ impl Parameters<f64> {
     };
 }
 
-/// Computes `K0` from the original parameters of (3.15): `K0 = kappa0 / (eps_b - eps_tr)`.
+/// Computes `K0` from the original parameters, equation (3.15) of Cohn (1998): `K0 = kappa0 /
+/// (eps_b - eps_tr)`.
 ///
 /// # Errors
 /// `kappa0` must be positive, and `eps_b` must be between `eps_tr` and 1.

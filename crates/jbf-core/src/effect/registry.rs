@@ -17,8 +17,8 @@ pub(crate) trait Shelf<T: Real>: EffectSet<T> {
     /// Returns true if no effect of the stage is selected.
     fn is_empty(&self) -> bool;
 
-    /// Selects the effect `name` with these parameters, or removes it if a parameter has an
-    /// infinite null value.
+    /// Selects the effect `name` with these parameters, or removes it if a parameter has its null
+    /// value and this is infinite.
     ///
     /// Returns `None` if the stage has no effect with this name.
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;

@@ -270,7 +270,7 @@ class Motion:
     )
     min_noise_ratio: float = documented(
         1.1,
-        "minimum ratio by which the noise in addition to the errors of the motion must decrease "
+        "minimum ratio by which the noise, or the RMS of the residuals, must decrease "
         "for these errors to be re-estimated",
         "a tenth of the noise",
     )

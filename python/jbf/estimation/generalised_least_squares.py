@@ -17,6 +17,8 @@ from jbf.estimation.delays import common_delay_step, delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import WHITE
 from jbf.estimation.posterior_motions import (
+    corrected_delay_s,
+    delayed,
     moved,
     posteriors,
     rougher,
@@ -25,11 +27,9 @@ from jbf.estimation.posterior_motions import (
 )
 from jbf.estimation.prepared import coasting
 from jbf.estimation.problem import Problem
-from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
-from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 ROUNDS = 8
@@ -98,26 +98,18 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     return best.problem, replace(best.solution, systematic=change)
 
 
-def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Re-estimate the errors of the motion for a model with more effects, and refit the model.
+def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+    """Return the problem without corrected delays and without corners located by the forces.
 
-    The noise of the force, and scale and smoothness of the motion's errors, are estimated. A
-    corrected delay is projected out of the residuals as before; otherwise a delay is estimated.
+    The errors of the motion of a model with other effects are estimated from it.
     """
-    before = problem.campaign.samples.motion
-    delayed = before is not None and before.by_delay is not None
-    without = with_posteriors(problem, [m and m.with_corners_of(None) for m in posteriors(problem)])
-    problem, solution = _likeliest_smoothness(without, _near(without, solution))
-    motion = estimate_motion_errors(problem, solution)
-    if motion.mean_share(solution.samples.weight) > problem.campaign.settings.motion.min_share:
-        problem = with_corners_of_forces(problem, solution, motion)
-        solution = _near(problem, solution)
-        motion = estimate_motion_errors(problem, solution)
-    if not delayed:
-        end = _iterated(problem, solution, 0.0)
-        if end.delayed:
-            return end.problem, end.solution
-    return problem, _fitted(problem, solution, motion, delayed=delayed)
+    campaign = problem.campaign
+    late_s = corrected_delay_s(campaign)
+    if late_s != 0.0:
+        problem = delayed(problem, -late_s)
+    motions = [m and m.with_corners_of(None) for m in posteriors(problem)]
+    problem = with_posteriors(problem, motions)
+    return problem, _near(problem, solution)
 
 
 def _with_corners_of_forces(first: Problem, end: _End) -> _End:
@@ -198,7 +190,7 @@ def _iterated(
     late_s = clock_s if late_s is None else late_s
     delays = delays and first.campaign.force_has_clock
     if late_s != 0.0:
-        problem = _delayed(first, late_s)
+        problem = delayed(first, late_s)
         solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
     for _ in range(ROUNDS):
         motion = estimate_motion_errors(problem, solution)
@@ -210,7 +202,7 @@ def _iterated(
             break
         if step_s != 0.0:
             late_s += step_s
-            problem = _delayed(first, late_s)
+            problem = delayed(first, late_s)
             values = solution.values
             solution = problem.solution(values, problem.samples_at(values), WHITE)
             motion = estimate_motion_errors(problem, solution)
@@ -381,16 +373,3 @@ def _delay(
     if not np.isfinite(sd_s) or abs(late_s + step_s) > most_s:
         return 0.0
     return step_s if abs(step_s) > SETTLED * sd_s else 0.0
-
-
-def _delayed(first: Problem, late_s: float) -> Problem:
-    """Return the problem with the force of each run shifted to earlier times by `late_s`."""
-    prepared = tuple(p.shifted(late_s, 0.0) for p in first.campaign.prepared)
-    names = ", ".join(p.run.name for p in prepared)
-    side = "late" if late_s > 0.0 else "early"
-    words = f"the force is {1e3 * abs(late_s):.2g} ms {side} relative to the motion in all runs"
-    finding = Finding("late_channel", "friction_n", names, late_s, "s", "shifted", words)
-    campaign = replace(
-        first.campaign, prepared=prepared, samples=Samples.of(prepared, first.campaign.settings)
-    )
-    return first.with_campaign(campaign.with_findings([finding]))

@@ -8,15 +8,20 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.prepared import Prepared, coasting
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from jbf.records.findings.finding import Finding
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.motion.readings import ForceReadings
 from jbf.records.motion.smoothing import Smoothed
 
 Array = npt.NDArray[np.float64]
+LATE = "late_channel"
+"""Kind of the finding that states a corrected delay of the force."""
 STEP = 0.5
 """Step of numerical derivatives with respect to the motion, in standard errors of the motion.
 
@@ -82,6 +87,44 @@ def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsI
         forces = ForceReadings(p.run.time_s, rows, values, variances)
         motions.append(smoothed.with_corners_of(forces))
     return with_posteriors(problem, motions)
+
+
+def _corrected(campaign: Campaign) -> list[Finding]:
+    """Return the finding that states a corrected delay common to all runs, or an empty list."""
+    names = _all_runs(campaign)
+    return [f for f in campaign.more_findings if (f.kind, f.run) == (LATE, names)]
+
+
+def _all_runs(campaign: Campaign) -> str:
+    """Return the names of all runs, as in a finding."""
+    return ", ".join(p.run.name for p in campaign.prepared)
+
+
+def corrected_delay_s(campaign: Campaign) -> float:
+    """Return the corrected delay of the force that is common to all runs, s; zero without one."""
+    return sum(f.size for f in _corrected(campaign))
+
+
+def delayed(first: Problem, late_s: float) -> Problem:
+    """Return the problem with the force of each run shifted to earlier times by `late_s`.
+
+    The finding states the total delay, including one that has already been corrected.
+    """
+    before = first.campaign
+    prepared = tuple(p.shifted(late_s, 0.0) for p in before.prepared)
+    corrected = _corrected(before)
+    total_s = late_s + sum(f.size for f in corrected)
+    others = tuple(f for f in before.more_findings if f not in corrected)
+    samples = Samples.of(prepared, before.settings)
+    campaign = replace(before, prepared=prepared, samples=samples, more_findings=others)
+    if total_s != 0.0:
+        side = "late" if total_s > 0.0 else "early"
+        words = (
+            f"the force is {1e3 * abs(total_s):.2g} ms {side} relative to the motion in all runs"
+        )
+        finding = Finding(LATE, "friction_n", _all_runs(before), total_s, "s", "shifted", words)
+        campaign = campaign.with_findings([finding])
+    return first.with_campaign(campaign)
 
 
 def moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:

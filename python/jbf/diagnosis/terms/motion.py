@@ -12,7 +12,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.generalised_least_squares import (
     with_motion_errors,
-    with_motion_errors_again,
+    with_recorded_motion,
 )
 from jbf.estimation.solution import Solution
 
@@ -20,31 +20,27 @@ Array = npt.NDArray[np.float64]
 
 
 def errors_of_motion(model: Model) -> Proposal | None:
-    """Propose motion errors (noise, scale, smoothness) re-estimated with the present effects.
+    """Propose errors of the motion and a common delay re-estimated with the present effects.
 
-    They may have been negligible next to the error of a model with fewer effects. The gain is
-    relative to the likelihood with the present motion errors. None if they are negligible, or if
-    the noise has not decreased by the minimum ratio of the policy since they were estimated.
+    They may have been negligible, or the delay wrong, next to the error of a model with fewer
+    effects. The gain is relative to the likelihood with the present motion errors. None for a rig
+    without a drive, if the errors are negligible, or if neither noise nor RMS decreases by the
+    minimum ratio of the policy.
     """
     campaign, solution = model.campaign, model.solution
-    before = campaign.samples.motion
-    if before is not None:
-        again, after = with_motion_errors_again(model.problem, solution)
-        motion = after.samples.motion
-        assert motion is not None
-        if motion.noise * model.policy.motion.min_noise_ratio > before.noise:
-            return None
-    elif campaign.rig.drive is not None:
-        before = _none(solution)
-        again, after = with_motion_errors(model.problem, solution)
-        motion = after.samples.motion
-    else:
+    if campaign.rig.drive is None:
         return None
-    if motion is None:
+    again, after = with_motion_errors(*with_recorded_motion(model.problem, solution))
+    before, motion = campaign.samples.motion, after.samples.motion
+    if before is None and motion is None:
+        return None
+    old, new = before or _none(solution), motion or _none(after)
+    ratio = max(old.noise / new.noise, solution.rms / max(after.rms, 1e-150))
+    if before is not None and ratio < model.policy.motion.min_noise_ratio:
         return None
     of_before, of_after = _common_weights((campaign, solution), (again.campaign, after))
-    gain = before.deviance(solution.residuals, of_before)
-    gain -= motion.deviance(after.residuals, of_after)
+    gain = old.deviance(solution.residuals, of_before)
+    gain -= new.deviance(after.residuals, of_after)
     # A problem with a shifted force has samples of its own.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
     return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2))

@@ -286,14 +286,11 @@ class HeldOutSettings:
     parts: int = documented(10, "parts of a single run; every other one is held out", "convention")
     min_information: float = documented(
         1e-4,
-        "share of the information on a parameter below which the remaining runs do not determine "
-        "it",
+        "share of the information below which the remaining runs do not determine a parameter",
         "a hundred times the standard error",
     )
     extrapolation_margin: float = documented(
-        0.1,
-        "share of the largest value of all runs within which nothing is extrapolated",
-        "convention",
+        0.1, "share of the largest value within which nothing is extrapolated", "convention"
     )
     extrapolation_share: float = documented(
         0.05, "share of a run's samples that must be beyond all others", "more than single samples"
@@ -308,8 +305,7 @@ class MotionSettings:
 
     coast_down_spacing: float = documented(
         2.0,
-        "distance of the samples of a coast-down that count, in correlation lengths of the "
-        "acceleration's errors",
+        "spacing of the used samples of a coast-down, in correlation lengths of the errors",
         "independent errors",
     )
     min_share: float = documented(
@@ -324,9 +320,8 @@ class MotionSettings:
     )
     min_noise_share: float = documented(
         1e-3,
-        "standard deviation of the noise, relative to the RMS force, below which it is not "
-        "estimated",
-        "accuracy of a friction model and of a rig's parameters; a command has no noise of its own",
+        "minimum standard deviation of the noise, relative to the RMS force",
+        "accuracy of a friction model; a command has no noise of its own",
     )
     scale_prior: float = documented(
         1.0,

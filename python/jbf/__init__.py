@@ -29,6 +29,7 @@ if _TYPE_CHECKING:
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
     from jbf.estimation.trajectory_fit import TrajectoryFit, fit_trajectories
+    from jbf.estimation.work import TimeLimit
     from jbf.importing.guessed import Guess
     from jbf.importing.import_files import import_files, look, read_recording
     from jbf.importing.mapping import Map, read_map
@@ -99,6 +100,7 @@ _LATER = {
     "fit": "jbf.estimation.fit",
     "TrajectoryFit": "jbf.estimation.trajectory_fit",
     "fit_trajectories": "jbf.estimation.trajectory_fit",
+    "TimeLimit": "jbf.estimation.work",
     "Guess": "jbf.importing.guessed",
     "Import": "jbf.importing.result",
     "Map": "jbf.importing.mapping",
@@ -138,6 +140,7 @@ __all__ = [
     "Rig",
     "Run",
     "Stopped",
+    "TimeLimit",
     "Trajectory",
     "TrajectoryFit",
     "Unfinished",

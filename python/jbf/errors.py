@@ -154,6 +154,12 @@ class Unfinished(InputError):
         Number of integration steps of the model.
     fit
         The best :class:`jbf.Fit` so far, or None.
+    time_limit_s
+        The time limit that was reached, s; None if the computing budget was exceeded.
+    share
+        Fraction of the time limit that was available for this part of the computation.
+    sufficient_s
+        Time limit that would probably suffice, s; None if unknown.
 
     Examples
     --------
@@ -161,22 +167,57 @@ class Unfinished(InputError):
     True
     """
 
-    def __init__(self, *, steps: float, fit: Any = None, file: str | None = None) -> None:
+    def __init__(
+        self,
+        *,
+        steps: float,
+        fit: Any = None,
+        file: str | None = None,
+        time_limit_s: float | None = None,
+        share: float = 1.0,
+        sufficient_s: float | None = None,
+    ) -> None:
         self.steps, self.fit = steps, fit
+        self.time_limit_s, self.share, self.sufficient_s = time_limit_s, share, sufficient_s
         best = "no fit so far"
         if fit is not None:
             model = " + ".join([fit.model.law, *fit.model.effects])
             unit = fit.model.rig.quantities.force
             best = f"the best so far is {model}, RMS {fit.rms:.3g} {unit}, not finished"
-        super().__init__(
-            problem=f"not finished after {steps:.1g} steps of the model; {best}",
-            remedy="check the unit of time, or use a law without memory, such as stribeck, or a "
-            "higher sampling rate",
-            file=file,
-        )
+        if time_limit_s is None:
+            done = f"not finished after {steps:.1g} steps of the model"
+            remedy = (
+                "check the unit of time, or use a law without memory, such as stribeck, or a "
+                "higher sampling rate"
+            )
+        else:
+            done = f"not finished within the time limit of {time_limit_s:g} s"
+            remedy = "use a longer time limit"
+            if sufficient_s is not None:
+                remedy = f"use a longer time limit; {sufficient_s:g} s would probably suffice"
+        super().__init__(problem=f"{done}; {best}", remedy=remedy, file=file)
+
+    @property
+    def reason(self) -> str:
+        """Reason why a part of a computation was omitted, as a clause."""
+        if self.time_limit_s is None:
+            return "computing time limit reached"
+        share = "its share of the " if self.share < 1.0 else ""
+        return f"{share}time limit of {self.time_limit_s:g} s reached"
+
+    def with_fit(
+        self, fit: Any, file: str | None = None, sufficient_s: float | None = None
+    ) -> Unfinished:
+        """Return a copy of the error with the best fit so far."""
+        changed = {"fit": fit, "file": file, "sufficient_s": sufficient_s}
+        return Unfinished(**{**self._arguments(), **changed})
+
+    def _arguments(self) -> dict[str, Any]:
+        names = ("steps", "fit", "file", "time_limit_s", "share", "sufficient_s")
+        return {name: getattr(self, name) for name in names}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return partial(type(self), steps=self.steps, fit=self.fit, file=self.file), ()
+        return partial(type(self), **self._arguments()), ()
 
 
 def printable(text: str) -> str:

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
+from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs, time_limit
 from jbf.cli.arguments import (
     Commands,
     LawOptions,
@@ -51,6 +51,7 @@ class DiagnoseOptions:
     report: str | None
     verbosity: Verbosity
     effects_from: tuple[str, ...]
+    time_limit: str | None
     typed: str
 
 
@@ -63,6 +64,7 @@ def add(commands: Commands) -> None:
     add_json(parser)
     add_report(parser)
     add_verbosity(parser)
+    time_limit.add(parser, "the best model by then is the result, with what was not tested")
     also = (
         f", or {AUTO}: the law that predicts held-out runs best (default: journal for a bearing, "
     )
@@ -96,6 +98,7 @@ def _add_next_run(parser: Parser) -> None:
 
 def run(options: DiagnoseOptions) -> int:
     """Run `jbf diagnose` and return its exit code."""
+    limit = time_limit.time_limit(options.time_limit)
     if options.many is not None:
         for name, given in (
             (hold_out.OPTION, options.hold_out),
@@ -136,10 +139,11 @@ def run(options: DiagnoseOptions) -> int:
     runs, held_out = hold_out.split(runs, options.hold_out)
 
     from jbf.diagnosis import diagnose
+    from jbf.diagnosis.budget import STAGES
 
     texts = {}
     try:
-        with shown("diagnosing") as report:
+        with shown("diagnosing", stages=STAGES, time_limit=limit) as report:
             diagnosis = diagnose(
                 rig,
                 runs,
@@ -148,6 +152,7 @@ def run(options: DiagnoseOptions) -> int:
                 limits=limits_of_rig,
                 policy=policy,
                 progress=report,
+                time_limit_s=limit,
             )
             if options.report:
                 from jbf.reporting.diagnosis_page import diagnosis_page

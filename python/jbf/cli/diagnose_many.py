@@ -6,7 +6,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jbf.cli import outputs
+from jbf.cli import outputs, time_limit
 from jbf.cli.progress import shown
 from jbf.cores import check_jobs, processes
 from jbf.errors import InputError
@@ -47,6 +47,7 @@ def run(options: DiagnoseOptions, folder: str) -> int:
             remedy="each subfolder contains its own rig.toml and runs",
         )
     check_jobs(options.jobs)
+    limit = time_limit.time_limit(options.time_limit)
     campaigns = campaigns_in(folder)
     jobs = processes(options.jobs, len(campaigns))
     inside = [str(path) for path in Path(folder).iterdir()]
@@ -66,6 +67,8 @@ def run(options: DiagnoseOptions, folder: str) -> int:
             clock=options.law.clock,
             limits=options.limits.limits(options.next_duration_s),
             policy=options.level.policy(),
+            # The limit of each campaign begins with its diagnosis.
+            time_limit_s=None if limit is None else limit.seconds,
         )
     texts: dict[str, str] = {}
     for name, result in results.items():

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from jbf.cli import hold_out, inputs, outputs
+from jbf.cli import hold_out, inputs, outputs, time_limit
 from jbf.cli.arguments import (
     Commands,
     LawOptions,
@@ -23,6 +23,7 @@ from jbf.models.catalogue import check_applies, find_parameter, in_chain_order, 
 
 if TYPE_CHECKING:
     from jbf.estimation.fit import Fit
+    from jbf.estimation.work import TimeLimit
     from jbf.records.run import Run
 
 
@@ -40,6 +41,7 @@ class FitOptions:
     hold_out: tuple[str, ...]
     out: str | None
     effects_from: tuple[str, ...]
+    time_limit: str | None
 
 
 def add(commands: Commands) -> None:
@@ -75,6 +77,7 @@ def add(commands: Commands) -> None:
         help="standard errors from N fits to simulated records of the same runs (at least 19; "
         "takes N times as long)",
     )
+    time_limit.add(parser, "then the fit is aborted, and --out receives the best model so far")
     hold_out.add(parser)
     parser.add_argument("--out", metavar="MODEL", help="write the fitted model (TOML)")
     add_effects_from(parser)
@@ -82,6 +85,7 @@ def add(commands: Commands) -> None:
 
 def run(options: FitOptions) -> int:
     """Run `jbf fit` and return its exit code."""
+    limit = time_limit.time_limit(options.time_limit)
     targets = {"--out": options.out}
     if not options.runs and not os.path.isdir(options.rig):
         raise InputError(
@@ -105,7 +109,7 @@ def run(options: FitOptions) -> int:
 
         check_repeats(repeats, "--bootstrap")
     try:
-        with shown("fitting") as report:
+        with shown("fitting", time_limit=limit) as report:
             fitted = fit(
                 rig,
                 runs,
@@ -114,9 +118,10 @@ def run(options: FitOptions) -> int:
                 clock=options.law.clock,
                 start=start,
                 fixed=fixed,
+                time_limit_s=limit,
             )
             if repeats is not None:
-                fitted = _bootstrapped(fitted, runs, repeats, report)
+                fitted = _bootstrapped(fitted, runs, repeats, report, limit)
     except Stopped as stop:
         raise outputs.keep(stop, options.out) from None
     except Unfinished as end:
@@ -130,15 +135,17 @@ def run(options: FitOptions) -> int:
     return 0
 
 
-def _bootstrapped(fitted: Fit, runs: list[Run], repeats: int, report: Report) -> Fit:
-    """Replace the standard errors of a fit by bootstrap standard errors.
+def _bootstrapped(
+    fitted: Fit, runs: list[Run], repeats: int, report: Report, limit: TimeLimit | None
+) -> Fit:
+    """Return the fit with bootstrap standard errors.
 
     An interrupt raises `Stopped` with the fit.
     """
     from jbf.estimation.bootstrap import bootstrap
 
     try:
-        return bootstrap(fitted, runs, repeats=repeats, progress=report).fit
+        return bootstrap(fitted, runs, repeats=repeats, progress=report, time_limit_s=limit).fit
     except KeyboardInterrupt:
         raise Stopped(fitted) from None
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -10,12 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.level import Directions
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
 from jbf.estimation.held_out import HeldOutPart
 from jbf.estimation.minimum import Approach
 from jbf.estimation.problem import Problem, bounded
 from jbf.estimation.solution import Solution
 from jbf.models.driven import Driven
+from jbf.records.run import Run
 
 if TYPE_CHECKING:
     from jbf.diagnosis.candidates import Candidates
@@ -94,17 +95,21 @@ class Reached:
     Attributes
     ----------
     candidates, present
-        Cached fits, and effects of the model; None before the first fit.
+        Candidates that include the fit, and effects of the model; None before the first fit.
+    runs, campaign
+        The recorded and the prepared runs; empty and None before.
     """
 
     candidates: Candidates | None = None
     present: tuple[str, ...] = ()
+    runs: list[Run] = field(default_factory=list)
+    campaign: Campaign | None = None
 
     def fit(self) -> Fit | None:
         """Return the fit of the model with standard errors; None if no model has been fitted."""
         if self.candidates is None:
             return None
-        # The remaining work is small and final: lift the limit on computing steps.
-        self.candidates.campaign.work.renew(math.inf)
+        # The remaining work is small and final: lift its limits.
+        self.candidates.campaign.work.lift()
         problem = self.candidates.fitted(self.present).problem
         return finish(problem, self.candidates.converge(self.present))

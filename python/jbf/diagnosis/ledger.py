@@ -13,6 +13,8 @@ CONFOUNDER = (
     "not named: the runs disagree on it, more structure remains than it explains, or none of its "
     "parameters is identifiable"
 )
+SEARCH = "search"
+"""Axis of a remainder that reports a search ended by the budget or a time limit."""
 REPLACED = "added first, but not needed with the effects added later"
 
 
@@ -129,6 +131,11 @@ class Remainder:
     axis: str
     where: str
     share: float
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether it reports an incomplete search in place of structure."""
+        return self.axis == SEARCH
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""

@@ -10,6 +10,7 @@ from jbf.diagnosis.candidates import Progress
 from jbf.diagnosis.recipe import diagnose
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError, JbfError
+from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock, find_law
 from jbf.models.vocabulary import AUTO
 from jbf.records.arguments import check_callable, described, one_of
@@ -20,8 +21,8 @@ from jbf.records.run import PathLike, Run
 Given = tuple[Rig, Sequence[Run]] | PathLike
 """A rig with its runs, or a folder that contains `rig.toml` and the runs as CSV."""
 
-OPTIONS = ("law", "clock", "limits", "policy")
-"""Names of the options of `diagnose` that apply to all campaigns."""
+OPTIONS = ("law", "clock", "limits", "policy", "time_limit_s")
+"""Options of `diagnose` that may be given for all campaigns."""
 
 
 def diagnose_many(
@@ -44,7 +45,7 @@ def diagnose_many(
     progress
         Called with a campaign's name and verdict, the number of finished campaigns and the total.
     options
-        As for `diagnose`: `law`, `clock`, `limits`, `policy`.
+        As for `diagnose`: `law`, `clock`, `limits`, `policy`, and `time_limit_s` of each campaign.
 
     Returns
     -------
@@ -73,6 +74,7 @@ def diagnose_many(
         find_law(options.get("law", "journal"))
     find_clock(options.get("clock", "journal"))
     check_callable(progress, "progress")
+    TimeLimit.of(options.get("time_limit_s"))
     if not isinstance(campaigns, Mapping):
         raise InputError(
             problem=f"campaigns is {described(campaigns)}",

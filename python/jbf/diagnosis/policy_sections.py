@@ -323,6 +323,9 @@ class Laws:
     budget_share: float = documented(
         0.25, "share of the computing budget above which a law is not evaluated", "a quarter"
     )
+    time_share: float = documented(
+        0.5, "share of a time limit after which no further law is evaluated", "a half"
+    )
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from jbf.comparison.comparison import Comparison, compare_prepared
+from jbf.diagnosis.budget import (
+    ALTERNATIVES,
+    NEXT_EXPERIMENT,
+    POWER,
+    SIMPLER_LAWS,
+    OptionalParts,
+    sufficient_time_s,
+)
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.drive import OFFSET, machine_of, with_errors_of_motion
 from jbf.diagnosis.experiment_design.excitations import Limits
@@ -17,9 +25,9 @@ from jbf.diagnosis.experiment_design.next_run import (
     undetectable_effects,
 )
 from jbf.diagnosis.fit_state import Reached
-from jbf.diagnosis.ledger import with_final_outcomes
+from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.diagnosis.power import power
+from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.selection import Names, start_model, weights
@@ -36,15 +44,14 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
 from jbf.estimation.initial_state import initial_memory
 from jbf.estimation.transients import without_transients
+from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock, find_law
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import AUTO, Clock
-from jbf.records.arguments import check_callable, of_kind
+from jbf.records.arguments import check_callable, list_of_runs, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
-
-TOO_LONG = "exceeds the computing time limit on these records"
 
 
 @one_blas_thread
@@ -57,6 +64,7 @@ def diagnose(
     limits: Limits | None = None,
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
+    time_limit_s: float | TimeLimit | None = None,
 ) -> Diagnosis:
     """Find the effects of the catalogue that are missing from a law.
 
@@ -78,6 +86,9 @@ def diagnose(
         Thresholds and settings that determine the verdict.
     progress
         Called with a message, the number of finished trials of the round and the total number.
+    time_limit_s
+        Duration after which the diagnosis ends with the best model so far, s; None for no limit.
+        `not_tried` lists the tests omitted. Such a result may differ between machines.
 
     Returns
     -------
@@ -91,7 +102,8 @@ def diagnose(
     Stopped
         The diagnosis was interrupted; the exception holds the model at the start of the last round.
     Unfinished
-        The computing budget was exceeded; the exception holds the same model.
+        The computing budget or the time limit was exceeded before the first round of tests ended;
+        the exception holds the same model.
 
     Notes
     -----
@@ -110,17 +122,23 @@ def diagnose(
     >>> diagnosis.verdict, diagnosis.effects
     ('adequate', ())
     """
-    reached = Reached()
+    reached, time_limit = Reached(), TimeLimit.of(time_limit_s)
     try:
-        return _diagnose(rig, runs, law, clock, limits, policy, progress, reached)
+        return _diagnose(rig, runs, law, clock, limits, policy, progress, time_limit, reached)
     except KeyboardInterrupt:
         fitted = reached.fit()
         if fitted is None:
             raise
         raise Stopped(fitted) from None
     except Unfinished as stop:
-        named = None if reached.candidates is None else reached.candidates.campaign.named
-        raise Unfinished(steps=stop.steps, fit=reached.fit(), file=named) from None
+        if not reached.runs:
+            raise
+        sufficient_s = None
+        if time_limit is not None:
+            sufficient_s = sufficient_time_s(reached, law, clock, time_limit)
+        first = reached.runs[0]
+        named = str(first.path or first.name)
+        raise stop.with_fit(reached.fit(), named, sufficient_s) from None
 
 
 def _diagnose(
@@ -131,6 +149,7 @@ def _diagnose(
     limits: Limits | None,
     policy: Policy,
     progress: Progress | None,
+    time_limit: TimeLimit | None,
     reached: Reached,
 ) -> Diagnosis:
     """Implement `diagnose`; `reached` is updated after each round."""
@@ -141,7 +160,9 @@ def _diagnose(
     check_callable(progress, "progress")
     if limits is not None:
         of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
-    recorded = Campaign.prepare(rig, runs, policy.estimation)
+    reached.runs = list_of_runs(runs)
+    recorded = Campaign.prepare(rig, reached.runs, policy.estimation, time_limit)
+    reached.campaign = recorded
     laws: tuple[LawTried, ...] = ()
     no_law: dict[str, str] = {}
     names: tuple[str, ...] = (law,)
@@ -160,10 +181,10 @@ def _diagnose(
             answer = _with_law(
                 campaign, name, clock, limits, policy, progress, reached, given=law != AUTO
             )
-        except Unfinished:
+        except Unfinished as stop:
             if best is None:
                 raise
-            no_law[f"law {name}"] = TOO_LONG
+            no_law[f"law {name}"] = stop.reason
             continue
         except KeyboardInterrupt:
             if best is None:
@@ -243,41 +264,56 @@ def _with_law(
     if with_motion_errors is not None:
         candidates = candidates.of(with_motion_errors)
     selected = select(candidates)
-    candidates = selected.candidates
-    before = _before(candidates)
-    campaign = candidates.campaign
+    candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, refused = selected.present, selected.steps, selected.refused
-    remains = (*remainder_of(candidates, present), *refused)
-    doubted = confounders(candidates, present, remains) if remains else ()
-    machine = machine_of(candidates, present)
-    named = tuple(name for name in present if name not in doubted)
-    if doubted and not remainder_of(candidates, named):
-        # The model without the confounders has no residual structure: remove them.
-        present, remains = named, refused
-    missing = tuple(name for name in named if name not in machine)
-    kept = best_predicting(candidates, present, named)
-    if kept != steps[-1].effects:
-        steps.append(step(candidates, kept, ()))
-    fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
+    with campaign.work.untimed():
+        before = _before(candidates)
+        remains = (*remainder_of(candidates, present), *refused)
+        doubted = confounders(candidates, present, remains) if remains else ()
+        machine = machine_of(candidates, present)
+        named = tuple(name for name in present if name not in doubted)
+        if doubted and not remainder_of(candidates, named):
+            # The model without the confounders has no residual structure: remove them.
+            present, remains = named, refused
+        missing = tuple(name for name in named if name not in machine)
+        kept = best_predicting(candidates, present, named)
+        if kept != steps[-1].effects:
+            steps.append(step(candidates, kept, ()))
+        fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     uncertain = effects_without_estimate(fit.parameters, missing, policy)
     doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
     steps = with_final_outcomes(steps, present, doubted)
+    optional = OptionalParts(candidates.tell)
+    every: dict[str, dict[str, float]] = optional.of(
+        ALTERNATIVES, lambda: weights(candidates, named), {}
+    )
+    if missing and selected.finished and ALTERNATIVES in optional.omitted:
+        where = f"{optional.omitted[ALTERNATIVES]}; alternatives to the effects were not tested"
+        remains = (*remains, Remainder(SEARCH, where, 0.0))
     weighted = (*missing, OFFSET)
-    posterior = {name: w for name, w in weights(candidates, named).items() if name in weighted}
+    posterior = {name: w for name, w in every.items() if name in weighted}
     equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     tied = {name: others for name, others in equal.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))
-    strengths = () if remains else power(candidates, present)
-    hidden = undetectable_effects(candidates, present, strengths)
+    limits_of_runs: tuple[tuple[Power, ...], Names] = ((), ())
+    if not remains:
+        limits_of_runs = optional.of(POWER, lambda: _power(candidates, present), limits_of_runs)
+    elif all(remainder.unfinished for remainder in remains):
+        optional.omitted[POWER] = next(iter((selected.not_tried | optional.omitted).values()))
+    strengths, hidden = limits_of_runs
     instead = None
     if given and (len(missing) > 1 or remains):
-        instead = simpler_law(candidates, kept, clock)
+        instead = optional.of(SIMPLER_LAWS, lambda: simpler_law(candidates, kept, clock), None)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
-        proposal = propose_detection_run(candidates, present, hidden, limits)
+        proposal = optional.of(
+            NEXT_EXPERIMENT,
+            lambda: propose_detection_run(candidates, present, hidden, limits),
+            None,
+        )
     if tied:
         rivals = [_rivals(named, name, others) for name, others in tied.items()]
-        proposal = propose(candidates, rivals, limits)
+        proposal = optional.of(NEXT_EXPERIMENT, lambda: propose(candidates, rivals, limits), None)
     return Diagnosis(
         verdict=answer,
         effects=missing,
@@ -294,7 +330,8 @@ def _with_law(
         after=compare_prepared(fit.model, campaign),
         elapsed_s=time.monotonic() - begun,
         level=candidates.level,
-        not_tried=candidates.not_tried,
+        not_tried=candidates.not_tried | selected.not_tried | optional.omitted,
+        unfinished=(*selected.not_tried, *optional.omitted),
         not_detectable=hidden,
         policy=policy,
         findings=candidates.campaign.findings,
@@ -303,6 +340,12 @@ def _with_law(
         power=strengths,
         limitations=limitations(recorded, _values(fit), policy),
     )
+
+
+def _power(candidates: Candidates, present: Names) -> tuple[tuple[Power, ...], Names]:
+    """Power for each effect, and the effects that are not detectable in these runs."""
+    strengths = power(candidates, present)
+    return strengths, undetectable_effects(candidates, present, strengths)
 
 
 def _values(fit: Fit) -> dict[str, float]:

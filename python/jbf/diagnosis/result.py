@@ -56,7 +56,11 @@ class Diagnosis(Result):
     before, after
         Comparison of the base law and of the final model with the runs.
     not_tried
-        Effects that are compatible with the law but not testable in these runs, with reasons.
+        Effects that are compatible with the law but not testable in these runs, with reasons. Also
+        laws, effects and parts of the diagnosis that exceeded the computing budget or a time limit.
+    unfinished
+        Names in `not_tried` of the effects and parts of the diagnosis that exceeded the budget or
+        the time limit; empty for a complete diagnosis.
     not_detectable
         Effects that are not detectable in these runs at their typical strength.
     level
@@ -117,6 +121,7 @@ class Diagnosis(Result):
     weights: dict[str, dict[str, float]] = field(default_factory=dict)
     machine: tuple[str, ...] = ()
     limitations: tuple[str, ...] = ()
+    unfinished: tuple[str, ...] = ()
 
     @property
     def negligible(self) -> tuple[str, ...]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
-from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
+from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.residual_structure import find_residual_structure
 from jbf.diagnosis.selection import (
     Follow,
@@ -44,16 +44,27 @@ class Selected:
     steps
         The ledger, one step per round.
     refused
-        Reports on effects that fit better but do not improve the held-out predictions.
+        Effects that fit better but do not improve the held-out predictions. If the selection did
+        not finish, the reason.
+    not_tried
+        Effects that were not tested in addition to `present`, because the selection did not finish,
+        with the reason.
     """
 
     candidates: Candidates
     present: Names
     steps: list[Step]
     refused: tuple[Remainder, ...] = ()
+    not_tried: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the selection ended because no further effect is accepted."""
+        return not self.not_tried
 
 
-NOT_FINISHED = "computing time limit reached: not all further effects were tested"
+FURTHER = "further effects and recording artefacts"
+"""Name of what a selection omitted where the tests of no single effect are missing."""
 
 
 def select(candidates: Candidates) -> Selected:
@@ -67,21 +78,49 @@ def select(candidates: Candidates) -> Selected:
     Raises
     ------
     Unfinished
-        The first round exceeds the budget. A later round that exceeds it ends the selection.
+        The first round exceeds the budget or the time limit. If a later one exceeds it, the
+        selection ends with the last model of which each effect was reviewed.
     """
     completed: list[Selected] = []
     try:
         return _select(candidates, completed)
-    except Unfinished:
+    except Unfinished as stop:
         if not completed:
             raise
-        last = completed[-1]
-        last.candidates.campaign.work.renew()
-        return replace(last, refused=(Remainder("effects", NOT_FINISHED, 0.0),))
+        work = completed[-1].candidates.campaign.work
+        work.renew()
+        with work.untimed():
+            return _ended_early(completed[-1], stop)
+
+
+def _ended_early(last: Selected, stop: Unfinished) -> Selected:
+    """Return the last reviewed model as the result of an unfinished selection."""
+    candidates, present, steps = last.candidates, last.present, list(last.steps)
+    otherwise = FURTHER
+    if steps[-1].effects != present:
+        steps.append(step(candidates, present, ()))
+    else:
+        # The model with the leading effect was not reviewed.
+        trials = list(steps[-1].trials)
+        for i, trial in enumerate(trials):
+            if trial.outcome == "added":
+                reason = f"leads, but was not added: {stop.reason}"
+                trials[i] = replace(trial, outcome="rejected", reason=reason)
+                otherwise = f"models with {trial.effect}"
+        steps[-1] = replace(steps[-1], trials=tuple(trials))
+    tested = {trial.effect for trial in steps[-1].trials}
+    untested = [
+        name
+        for name in candidates.names
+        if name not in present and name not in tested and can_be_added(name, present)
+    ]
+    where = f"{stop.reason}; not all further effects were tested"
+    not_tried = dict.fromkeys(untested or [otherwise], stop.reason)
+    return Selected(candidates, present, steps, (Remainder(SEARCH, where, 0.0),), not_tried)
 
 
 def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
-    """Select effects and terms, and append the result of each round to `completed`."""
+    """Select effects and terms, and append each tested and each reviewed model to `completed`."""
     policy = candidates.policy
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
@@ -102,6 +141,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         completed.append(Selected(candidates, present, list(steps)))
         may_update = updates < policy.terms.max_updates
         update, grown = None, present
+        candidates.tell("reviewing the model", 0, 0)
         if trial_round.leader is not None:
             least = _evidence_of_leader(candidates, present, trial_round)
             update = best_term_update(candidates, present, least) if may_update else None
@@ -133,6 +173,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             return Selected(candidates, present, steps, refused)
         visited.add(frozenset(grown))
         present, follow = grown, "promising"
+        completed.append(Selected(candidates, present, list(steps)))
 
 
 def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Round) -> float:

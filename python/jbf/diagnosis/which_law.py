@@ -150,16 +150,20 @@ def which_law(
     """
     names, refused = followed(campaign, clock)
     held_out: dict[str, HeldOut] = {}
+    time_limit = campaign.work.time_limit
+    if time_limit is not None:
+        time_limit = time_limit.part(policy.laws.time_share)
+        campaign = replace(campaign, work=replace(campaign.work, time_limit=time_limit))
     for i, name in enumerate(names):
         if progress is not None:
             progress(f"trying the law {name}", i, len(names))
-        errors = _within(campaign, name, clock, policy)
-        if errors is None:
-            refused[f"law {name}"] = "exceeds the computing time limit on these records"
-        else:
-            held_out[name] = errors
+        try:
+            held_out[name] = _within(campaign, name, clock, policy)
+        except Unfinished as stop:
+            refused[f"law {name}"] = stop.reason
     if not held_out:
-        raise Unfinished(steps=campaign.work.most, file=campaign.named)
+        limit_s = None if time_limit is None else time_limit.seconds
+        raise Unfinished(steps=campaign.work.most, file=campaign.named, time_limit_s=limit_s)
     counts = [len(find_law(name).parameters) for name in held_out]
     tried = _compared(list(held_out), counts, list(held_out.values()), policy, campaign)
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
@@ -179,18 +183,12 @@ def _compared(
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 
-def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldOut | None:
-    """Held-out errors of a law with the machine terms, within a share of the computing budget.
-
-    Returns None if the share is exceeded.
-    """
+def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldOut:
+    """Held-out errors of a law with the machine terms, within its share of the budget."""
     limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
-    try:
-        candidates = Candidates(without_transients(limited, law, clock), law, clock, policy)
-        terms = tuple(effect for effect in TERMS if effect in candidates.names)
-        return held_out_errors(candidates, terms)
-    except Unfinished:
-        return None
+    candidates = Candidates(without_transients(limited, law, clock), law, clock, policy)
+    terms = tuple(effect for effect in TERMS if effect in candidates.names)
+    return held_out_errors(candidates, terms)
 
 
 def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
@@ -274,6 +272,11 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     """Find a law that predicts no worse than a model with effects and has no more parameters.
 
     One law may replace several effects. The machine terms are kept. None if no such law exists.
+
+    Raises
+    ------
+    Unfinished
+        The time limit is reached.
     """
     policy, campaign = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in TERMS)
@@ -290,6 +293,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         try:
             errors = held_out_errors(other, kept) if other.converge(kept).rms < max_rms else None
         except Unfinished:
+            campaign.work.check()  # the law exceeded its share; at the time limit, stop
             continue
         if errors is not None:
             held_out.append(errors)

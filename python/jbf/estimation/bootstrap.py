@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jbf.errors import InputError
+from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit
 from jbf.estimation.identifiability import reason_not_identifiable
@@ -33,6 +33,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import blocks_of
+from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import Parameter
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
@@ -111,6 +112,7 @@ def bootstrap(
     seed: int = 0,
     start: Mapping[str, float] | None = None,
     progress: Callable[[str, int, int], None] | None = None,
+    time_limit_s: float | TimeLimit | None = None,
 ) -> Bootstrap:
     """Compute standard errors from the scatter of fits to simulated records of the same runs.
 
@@ -131,6 +133,8 @@ def bootstrap(
         Starting values that were given to :func:`jbf.fit`, if any.
     progress
         Called with a message, the number of completed fits and the total number of fits.
+    time_limit_s
+        Duration after which the computation is aborted, s; None for no limit.
 
     Returns
     -------
@@ -141,6 +145,8 @@ def bootstrap(
     ------
     InputError
         Fewer than 19 repeats, or runs that cannot be prepared.
+    Unfinished
+        A fit exceeded its budget, or the time limit was reached; the exception holds `fitted`.
 
     Notes
     -----
@@ -161,6 +167,7 @@ def bootstrap(
     (19,)
     """
     check_repeats(repeats)
+    limit = TimeLimit.of(time_limit_s)
     checked_integer(seed, "seed")
     check_callable(progress, "progress")
     of_kind(fitted, Fit, "the fit", "give the result of jbf.fit for these runs")
@@ -181,15 +188,12 @@ def bootstrap(
             simulated_recording(p, f, fitted.noise, sigma, random)
             for p, f, sigma in zip(campaign.prepared, predictions, sigmas, strict=True)
         ]
-        refit = Problem(
-            Campaign.prepare(model.rig, simulated),
-            model.law,
-            model.clock,
-            model.effects,
-            held,
-            bounds,
-        )
-        estimates.append(minimum(refit, [named_values(start, problem.parameters)]).values)
+        try:
+            again = Campaign.prepare(model.rig, simulated, time_limit=limit)
+            refit = Problem(again, model.law, model.clock, model.effects, held, bounds)
+            estimates.append(minimum(refit, [named_values(start, problem.parameters)]).values)
+        except Unfinished as stop:
+            raise stop.with_fit(fitted, campaign.named) from None
     values = dict(zip(problem.names, np.array(estimates).T, strict=True))
     parameters = {
         name: with_error(p, values[name], problem.parameters[name])

@@ -20,7 +20,7 @@ from jbf.estimation.prepared import NoMotion, Prepared, coasting
 from jbf.estimation.quantisation import bias_rms, noise_before_converter
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
-from jbf.estimation.work import Work
+from jbf.estimation.work import TimeLimit, Work
 from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
 from jbf.models.requirements import has_angle, has_path, has_position
@@ -101,7 +101,13 @@ class Campaign:
     work: Work = field(default_factory=Work)
 
     @classmethod
-    def prepare(cls, rig: Rig, runs: Sequence[Run], settings: Settings = DEFAULT) -> Campaign:
+    def prepare(
+        cls,
+        rig: Rig,
+        runs: Sequence[Run],
+        settings: Settings = DEFAULT,
+        time_limit: TimeLimit | None = None,
+    ) -> Campaign:
         """Prepare each run, including the estimate of its motion.
 
         A duplicate of a run is dropped. A run without motion is excluded if another run has motion.
@@ -111,6 +117,8 @@ class Campaign:
         InputError
             No run, a run without friction, no run with motion, or a force that is zero throughout.
             The column `weight_angle_rad` in some runs only.
+        Unfinished
+            The time limit is reached.
         """
         runs = list_of_runs(runs)
         if not runs:
@@ -118,7 +126,10 @@ class Campaign:
         check_weight_angles(rig, runs)
         originals = copies(runs)
         ready, without_motion = _each(
-            rig, {i: r for i, r in enumerate(runs) if i not in originals}, settings.motion
+            rig,
+            {i: r for i, r in enumerate(runs) if i not in originals},
+            settings.motion,
+            time_limit,
         )
         prepared = tuple(
             p.finding([repeated(p.run, runs[k]) for k in originals if originals[k] == i])
@@ -132,7 +143,7 @@ class Campaign:
                 remedy="check the force sensor and its scale",
             )
         samples = Samples.of(prepared, settings)
-        work = Work.of(sum(len(p.friction) for p in prepared))
+        work = Work.of(sum(len(p.friction) for p in prepared), time_limit)
         noise = noise_upper_bound(prepared, samples)
         return cls(rig, prepared, samples, noise, tuple(without_motion), work)
 
@@ -316,7 +327,7 @@ def _span(load: Array) -> float:
 
 
 def _each(
-    rig: Rig, runs: Mapping[int, Run], settings: MotionSettings
+    rig: Rig, runs: Mapping[int, Run], settings: MotionSettings, time_limit: TimeLimit | None
 ) -> tuple[dict[int, Prepared], list[Finding]]:
     """Prepare all runs; return those with motion by index, and a finding for each of the others.
 
@@ -327,6 +338,8 @@ def _each(
     refused: list[NoMotion] = []
     without_motion = []
     for i, run in runs.items():
+        if time_limit is not None:
+            time_limit.check()
         try:
             prepared[i] = Prepared.of(rig, run, settings=settings)
         except NoMotion as error:
@@ -341,6 +354,8 @@ def _each(
         [e.smoothed for e in errors if e is not None and e.smoothed is not None]
     )
     for i in prepared if starts or period_s is not None else ():
+        if time_limit is not None:
+            time_limit.check()
         with suppress(NoMotion):
             prepared[i] = Prepared.of(
                 rig, runs[i], None if i in rates else period_s, starts, settings

@@ -26,6 +26,7 @@ from jbf.estimation.robust_fit import best_weighting
 from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import doubtful_errors, standard_errors
 from jbf.estimation.transients import check_film_rate
+from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
 from jbf.models.delayed_reading import TAU
@@ -250,6 +251,7 @@ def fit(
     fixed: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     cov_type: CovType = "model",
+    time_limit_s: float | TimeLimit | None = None,
 ) -> Fit:
     """Fit a base law, with named effects, to recorded runs by least squares.
 
@@ -276,6 +278,8 @@ def fit(
         "model": standard errors from the curvature of the likelihood, increased by the long-run
         variance of the score where the noise model does not describe the residual. "bootstrap":
         from 40 fits of simulated records (:func:`jbf.bootstrap`), which take 40 times as long.
+    time_limit_s
+        Duration after which the fit is aborted, s; None for no limit.
 
     Returns
     -------
@@ -290,7 +294,7 @@ def fit(
     Stopped
         The fit was interrupted; the exception holds the best fit so far.
     Unfinished
-        The fit exceeded its budget; the exception holds the best fit so far.
+        The fit exceeded its budget or the time limit; the exception holds the best fit so far.
 
     Notes
     -----
@@ -312,10 +316,11 @@ def fit(
     5.0
     """
     one_of(cov_type, get_args(CovType), "cov_type")
+    limit = TimeLimit.of(time_limit_s)
     chosen = in_chain_order(effects)
     check_rig(rig, law)
     check_applies(law, chosen)
-    campaign = Campaign.prepare(rig, runs)
+    campaign = Campaign.prepare(rig, runs, time_limit=limit)
     check_effects(campaign, chosen)
     pages = parameters_of(law, chosen)
     limits = checked_bounds(bounds, pages)
@@ -328,7 +333,7 @@ def fit(
         problem, solution = with_motion_errors(problem, solution)
         solution = best_weighting(problem, solution)
     except (KeyboardInterrupt, Unfinished) as stop:
-        campaign.work.renew(math.inf)
+        campaign.work.lift()
         values = problem.best.values
         if values is None:
             raise
@@ -336,12 +341,17 @@ def fit(
         near = problem.solution(problem.wrapped(values), samples, WHITE, False, "interrupted")
         best = finish(problem, near, given)
         if isinstance(stop, Unfinished):
-            raise Unfinished(steps=stop.steps, fit=best, file=campaign.named) from None
+            raise stop.with_fit(best, campaign.named) from None
         raise Stopped(best) from None
-    fitted = finish(problem, solution, given)
-    fitted = replace(fitted, doubtful=doubtful_errors(problem, solution, fitted.parameters))
+    with campaign.work.untimed():
+        fitted = finish(problem, solution, given)
+    try:
+        doubtful = doubtful_errors(problem, solution, fitted.parameters)
+    except Unfinished as stop:
+        raise stop.with_fit(fitted, campaign.named) from None
+    fitted = replace(fitted, doubtful=doubtful)
     if cov_type == "model":
         return fitted
     from jbf.estimation.bootstrap import bootstrap  # which imports this module
 
-    return bootstrap(fitted, runs, start=start).fit
+    return bootstrap(fitted, runs, start=start, time_limit_s=limit).fit

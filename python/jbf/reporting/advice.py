@@ -96,6 +96,7 @@ ADVICE = {
         "an effect that represents another one, or that only single runs require",
         "inspect the runs that require it; record one of them again",
     ),
+    "search": Advice("a time limit or a budget", "repeat with a longer time limit (--time-limit)"),
     "effects": Advice(
         "more effects than the search allows, or a different law",
         "compare the laws (--law auto)",

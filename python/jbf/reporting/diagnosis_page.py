@@ -9,6 +9,7 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 
 from jbf.comparison.parts import non_friction_effects
+from jbf.diagnosis.budget import POWER
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.selection import CHANCE
 from jbf.errors import InputError
@@ -46,6 +47,7 @@ from jbf.reporting.words import (
     headline_and_rest,
     held_out_sentence,
     listed,
+    not_tested_rows,
     number,
 )
 
@@ -107,7 +109,8 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         level=level_words(diagnosis.level),
         rounds=_rounds(diagnosis),
         remains=bool(diagnosis.residual_structure),
-        not_tried=list(diagnosis.not_tried.items()),
+        no_power=diagnosis.not_tried.get(POWER, ""),
+        not_tried=not_tested_rows(diagnosis.not_tried),
         not_detectable=listed(diagnosis.not_detectable),
         negligible=listed(diagnosis.negligible),
         limitations=diagnosis.limitations,

@@ -11,7 +11,7 @@ from jbf.records.findings.finding import Finding
 from jbf.reporting.advice import advice_on
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import LEDGER_HEAD, ledger_rows, parameter_rows
-from jbf.reporting.words import conclusion, law_sentence, listed
+from jbf.reporting.words import conclusion, law_sentence, listed, omitted_words
 
 MOST_LINES, USUAL_LINES = 30, 24
 """Maximum number of lines, and the number at which the list of parameters is truncated."""
@@ -120,9 +120,12 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
         lead = "Next experiment: " if diagnosis.experiment else "Note: "
         paragraphs.append(_paragraph(lead, next_experiment, 4))
     elif diagnosis.residual_structure:
-        worst = max(diagnosis.residual_structure, key=lambda remainder: remainder.share)
+        # An incomplete search first: it may find the cause of the structure.
+        worst = max(diagnosis.residual_structure, key=lambda r: (r.unfinished, r.share))
         advice = advice_on(worst.axis, diagnosis.after.campaign)
         paragraphs.append(_paragraph("Next: ", advice.to_do, 2))
+    if diagnosis.unfinished:
+        paragraphs.append(_paragraph("Not tested: ", omitted_words(diagnosis), 2))
     if diagnosis.limitations:
         first, *further = diagnosis.limitations
         count = f" (and {len(further)} more)" if further else ""

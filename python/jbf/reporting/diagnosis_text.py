@@ -17,6 +17,7 @@ from jbf.reporting.words import (
     extrapolation_sentences,
     law_words,
     noise_words,
+    not_tested_rows,
     number,
     step_name,
     verdict_sentence,
@@ -41,9 +42,9 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         for line, row in zip(table, rows, strict=True):
             lines += hanging(f"{line:<{lead}}", row[4], 0)
     if diagnosis.not_tried:
-        lines += ["", "Not tested: these runs do not contain the necessary motion or data"]
-        for name, reason in diagnosis.not_tried.items():
-            lines += hanging(f"    {name}: ", reason, 0)
+        lines += ["", "Not tested"]
+        for names, reason in not_tested_rows(diagnosis.not_tried):
+            lines += hanging("    ", f"{names}: {reason}", 0)
     if diagnosis.negligible:
         lines += ["", "Significant, but below the minimum effect size"]
         lines += hanging("    ", ", ".join(diagnosis.negligible), 0)
@@ -115,7 +116,9 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         lines += hanging("    ", sentence)
     lines += finding_lines(diagnosis.findings)
     lines += ["", "Residual structure"]
-    lines += where_lines(diagnosis.residual_structure) or ["    none above the noise"]
+    lines += where_lines([r for r in diagnosis.residual_structure if not r.unfinished]) or [
+        "    none above the noise"
+    ]
     lines += ["", "Parameters of the final model"]
     lines += lines_of_parameters(diagnosis.fit)
     return "\n".join([*lines, *effect_lines(model)])

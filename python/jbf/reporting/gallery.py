@@ -78,8 +78,9 @@ def failure_cards(diagnosis: Diagnosis) -> list[Card]:
 
 
 def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
-    """Cards of the unexplained residual structure of the final model."""
-    return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.residual_structure]
+    """Return one card per item of unexplained residual structure."""
+    structure = [r for r in diagnosis.residual_structure if not r.unfinished]
+    return [_remaining(diagnosis.after, remainder) for remainder in structure]
 
 
 def _failed(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from jbf.models.catalogue import find_law
@@ -26,6 +26,28 @@ def listed(words: Iterable[str], last: str = "and") -> str:
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} {last} {items[-1]}"
+
+
+def not_tested_rows(not_tried: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return rows of names and reasons; names with the same reason share a row."""
+    names: dict[str, list[str]] = {}
+    for name, reason in not_tried.items():
+        names.setdefault(reason, []).append(name)
+    return [(", ".join(group), reason) for reason, group in names.items()]
+
+
+def omitted_words(diagnosis: Diagnosis) -> str:
+    """Name what exceeded the budget or the time limit, with the reason; empty if nothing did."""
+    omitted: dict[str, list[str]] = {}
+    for name in diagnosis.unfinished:
+        omitted.setdefault(diagnosis.not_tried[name], []).append(name)
+    return "; ".join(f"{_shortened(names)} ({reason})" for reason, names in omitted.items())
+
+
+def _shortened(names: Sequence[str]) -> str:
+    """Join names, at most the first four."""
+    more = [f"{len(names) - 4} more"] if len(names) > 4 else []
+    return listed([*names[:4], *more])
 
 
 def law_words(model: Model, join: str = " (") -> str:
@@ -97,10 +119,11 @@ def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
     """Split the verdict into a headline and the remaining sentences."""
     verdict = verdict_sentence(diagnosis)
     if diagnosis.verdict == "unexplained":
+        reason = f"{_INCOMPLETE if _unfinished_searches(diagnosis) else _STRUCTURE}."
         if diagnosis.effects:
             rest = verdict.partition(". ")[2]
-            return f"Missing: {listed(diagnosis.effects)}. {_STRUCTURE}.", rest
-        return f"{_STRUCTURE}.", verdict
+            return f"Missing: {listed(diagnosis.effects)}. {reason}", rest
+        return reason, verdict
     if diagnosis.verdict == "adequate":
         return "Nothing is missing.", verdict
     first, stop, rest = verdict.partition(". ")
@@ -167,6 +190,24 @@ def _with_probabilities(diagnosis: Diagnosis, tied: Sequence[str]) -> str:
 
 
 _STRUCTURE = "The residual has structure that no effect in the catalogue explains"
+_UNEXPLAINED = "The residual has structure that no tested effect explains"
+_INCOMPLETE = "The search is not complete"
+
+
+def _unfinished_searches(diagnosis: Diagnosis) -> list[str]:
+    """Reasons why the search for effects is not complete."""
+    return [r.where for r in diagnosis.residual_structure if r.unfinished]
+
+
+def _reason(diagnosis: Diagnosis, place: str) -> str:
+    """State why a diagnosis is `unexplained`: an incomplete search, or residual structure."""
+    searches = _unfinished_searches(diagnosis)
+    structure = [r for r in diagnosis.residual_structure if not r.unfinished]
+    sentences = [f"{_INCOMPLETE}: {where}." for where in searches]
+    if structure or not searches:
+        words = _UNEXPLAINED if searches else _STRUCTURE
+        sentences.append(f"{words}{_worst(structure, place)}.")
+    return " ".join(sentences)
 
 
 def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
@@ -201,7 +242,7 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
         return (
             f"An effect is missing, but these runs cannot tell which: {ties}. With {added}, {fall}."
         )
-    structure = f"{_STRUCTURE}{_worst(diagnosis.residual_structure, place)}."
+    structure = _reason(diagnosis, place)
     if diagnosis.effects:
         return f"Missing: {added}. With {_pronoun(diagnosis.effects)}, {fall}. {structure}"
     return f"{structure} The held-out error is {final_error}."

@@ -15,7 +15,8 @@ import pytest
 from conftest import DRAG_N, NOISE_N
 from input_checks import Capture
 from jbf.cli import COMMANDS, main
-from jbf.cli.progress import shown
+from jbf.cli.progress import Estimate, shown
+from jbf.estimation.work import TimeLimit
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs pipes and terminals of POSIX")
 
@@ -161,6 +162,39 @@ def test_progress_is_logged_in_lines_where_stderr_is_not_a_terminal(capsys: Capt
     assert lines[0].startswith("jbf: starting")
     assert "run [a]" in lines[-1]
     assert "3 of 10" in lines[-1]
+
+
+def test_remaining_time_is_estimated_from_the_completed_share() -> None:
+    now = [0.0]
+    estimate = Estimate(clock=lambda: now[0])
+    assert estimate.words() == ""
+    estimate.report("fitting again", 0, 40)
+    now[0] = 10.0
+    estimate.report("fitting again", 10, 40)
+    assert "30 s" in estimate.words()
+    now[0] = 15.0
+    assert "25 s" in estimate.words()
+    now[0] = 60.0
+    assert estimate.words() == ""
+
+
+def test_remaining_time_of_a_round_covers_its_later_stages() -> None:
+    now = [0.0]
+    stages = {"first": (0.0, 0.2), "second": (0.2, 0.8)}
+    estimate = Estimate(stages, TimeLimit(100.0, lambda: now[0]), lambda: now[0])
+    estimate.report("first a", 0, 2)
+    now[0] = 2.0
+    estimate.report("first b", 1, 2)
+    assert "18 s" in estimate.words()
+    now[0] = 10.0
+    estimate.report("second a", 1, 2)
+    assert "7 s" in estimate.words()
+    assert "90 s" in estimate.words() or "2 min" in estimate.words()
+    # The next round begins anew.
+    estimate.report("first a", 0, 2)
+    now[0] = 12.0
+    estimate.report("first b", 1, 2)
+    assert "18 s" in estimate.words()
 
 
 @posix

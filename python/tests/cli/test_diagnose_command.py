@@ -1,6 +1,7 @@
 """`jbf diagnose` and `jbf power`: files, false-alarm rate, minimum effect size, held-out runs."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +75,43 @@ def test_diagnosis_beyond_the_work_limit_writes_the_partial_result_and_exits_wit
     assert result["fit"]["parameters"]["F_c"]["value"] == pytest.approx(5.0, rel=0.05)
     assert jbf.Model.load(model).law == "coulomb"
     assert "F_c" in page.read_text()
+
+
+@pytest.mark.parametrize("command", ["diagnose", "fit", "diagnose --many"])
+@pytest.mark.parametrize("value", ["0", "-5", "soon", "3 m", "nan"])
+def test_time_limit_that_is_no_positive_duration_exits_with_2(
+    command: str, value: str, slide: Path, capsys: Capture
+) -> None:
+    folder = slide.parent if "--many" in command else slide
+    assert main([*command.split(), str(folder), *LAW, "--time-limit", value]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "--time-limit" in message
+
+
+def test_time_limit_reached_at_once_exits_with_2_and_names_a_longer_one(
+    slide: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    out = tmp_path / "d.json"
+    options = ["--time-limit", "1 ns", "--json", str(out)]
+    assert main(["diagnose", str(slide), *LAW, *options]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert re.search(r"\b\d+ s\b", message)
+    result = json.loads(out.read_text())
+    assert (result["verdict"], result["fit"]) == (None, None)
+    assert main(["fit", str(slide), *LAW, "--time-limit", "1 ns"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_time_limit_that_is_not_reached_leaves_the_result_unchanged(
+    slide: Path, tmp_path: Path
+) -> None:
+    results = [
+        diagnosed(slide, tmp_path / "d.json", *options) for options in ([], ["--time-limit", "9 h"])
+    ]
+    assert [result.pop("elapsed_s") > 0.0 for result in results] == [True, True]
+    assert results[0] == results[1]
 
 
 @pytest.mark.extended

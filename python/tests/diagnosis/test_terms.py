@@ -162,7 +162,7 @@ def test_variance_by_run_does_not_compete_with_an_effect() -> None:
     assert [f.kind for f in update.campaign.more_findings] == ["noise_by_run"]
 
 
-def test_selection_that_exceeds_its_budget_ends_with_the_completed_rounds() -> None:
+def test_selection_that_exceeds_its_budget_ends_with_the_last_reviewed_model() -> None:
     whole = coulomb_candidates(linear_runs("offset and drag"))
     whole.campaign.work.renew()
     present = select(whole).present
@@ -171,7 +171,8 @@ def test_selection_that_exceeds_its_budget_ends_with_the_completed_rounds() -> N
     limited.campaign.work.renew(0.5 * whole.campaign.work.taken)
     ended = select(limited)
     assert set(ended.present) < set(present)
-    assert [r.axis for r in ended.refused] == ["effects"]
+    assert [r.axis for r in ended.refused] == ["search"]
+    assert ended.not_tried
     limited = coulomb_candidates(linear_runs("offset and drag"))
     limited.campaign.work.renew(1e-3 * whole.campaign.work.taken)
     with pytest.raises(Unfinished):

@@ -13,7 +13,7 @@ from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
-from jbf.estimation.work import ANY_STEPS, STEPS_A_SAMPLE, Work
+from jbf.estimation.work import ANY_STEPS, STEPS_A_SAMPLE, TimeLimit, Work
 
 
 def test_work_beyond_the_limit_raises_unfinished() -> None:
@@ -27,6 +27,28 @@ def test_work_beyond_the_limit_raises_unfinished() -> None:
     work.take(3.0)
     with pytest.raises(Unfinished):
         work.take(0.1)
+
+
+def test_work_beyond_the_time_limit_raises_unfinished() -> None:
+    now = [100.0]
+    work = Work.of(10, TimeLimit(8.0, lambda: now[0]))
+    half = work.part(0.5)
+    now[0] = 103.0
+    half.take(1.0)
+    now[0] = 105.0
+    work.take(1.0)
+    with pytest.raises(Unfinished) as ended:
+        half.take(1.0)
+    assert ended.value.time_limit_s == 8.0
+    now[0] = 108.0
+    with pytest.raises(Unfinished):
+        work.take(1.0)
+    with work.untimed():
+        work.take(1.0)
+    with pytest.raises(Unfinished):
+        work.check()
+    work.lift()
+    work.take(1e30)
 
 
 def test_work_limit_grows_with_the_samples_and_has_a_minimum() -> None:
@@ -63,6 +85,33 @@ def test_search_beyond_the_limit_raises_unfinished_and_stores_the_best_values() 
     assert ended.value.steps > 12.0 * once
     assert np.all(np.isfinite(problem.best.values))
     assert "\n" not in str(ended.value)
+
+
+def test_fit_within_a_time_limit_is_unchanged_and_beyond_it_raises_unfinished() -> None:
+    runs = four_runs(coulomb, noise_rms=0.1)
+    free, limited = (fit(Rig(), runs, law="coulomb", time_limit_s=t) for t in (None, 1e9))
+    assert limited.to_dict() == free.to_dict()
+    with pytest.raises(Unfinished) as ended:
+        fit(Rig(), runs, law="coulomb", time_limit_s=1e-9)
+    assert ended.value.time_limit_s == 1e-9
+
+
+def test_bootstrap_beyond_its_time_limit_raises_unfinished_with_the_given_fit() -> None:
+    runs, now = four_runs(coulomb, noise_rms=0.1), [0.0]
+    fitted = fit(Rig(), runs, law="coulomb")
+
+    def at_the_third(message: str, done: int, total: int) -> None:
+        now[0] = 2.0 if done == 2 else 0.0
+
+    with pytest.raises(Unfinished) as ended:
+        jbf.bootstrap(
+            fitted,
+            runs,
+            repeats=19,
+            progress=at_the_third,
+            time_limit_s=TimeLimit(1.0, lambda: now[0]),
+        )
+    assert ended.value.fit is fitted
 
 
 @pytest.fixture

@@ -31,6 +31,8 @@ NUMERICAL = {
         estimation.trajectory_fit: REST_SHARE
     """,
     "text of a result": """
+        diagnosis.budget: EVALUATIONS USUAL_CANDIDATES USUAL_STEPS CANDIDATES_A_LAW STEPS_A_SECOND
+        diagnosis.budget: STAGES
         diagnosis.residual_structure.bursts: APART_S NAMED
         diagnosis.residual_structure.constancy: NAMED MOST_REPORTED
         diagnosis.selection: LESS

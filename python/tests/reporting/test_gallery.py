@@ -121,7 +121,7 @@ def test_card_of_a_residual_structure_has_its_plot_share_and_advice(
 
 
 def test_every_axis_and_kind_of_residual_structure_has_advice_text() -> None:
-    kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects"}
+    kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects", "search"}
     assert set(ADVICE) == {*get_args(Axis), *kinds, "unconfirmed"}
     assert advice_on("nothing known") is NONE
 

@@ -177,7 +177,7 @@ def test_diagnosis_page_has_detection_limits_undetectable_and_untried_effects() 
     head = ("effect", "detectable from", "of friction", "distinct from", "confounded with")
     assert found.below(*head) == [["backlash", "gap 0.100 m", "2 %", "same", ""]]
     assert re.search(r"[Nn]ot detectable[^.]*\brunning_in\b", found.text)
-    assert found.below("effect", "reason")[0][0] == "position_ripple"
+    assert found.below("name", "reason")[0][0] == "position_ripple"
     assert "the residual has structure above the noise" in page("unexplained").text
 
 

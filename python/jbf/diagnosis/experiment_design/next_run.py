@@ -147,9 +147,13 @@ Rank = tuple[float, ...]
 def _best_motion(
     candidates: Candidates, limits: Limits, step_s: float, rank: Callable[[Driven], Rank]
 ) -> tuple[Rank, Excitation, Run, Driven] | None:
-    """Motion with the largest rank (the first of equal ones); None if the rank of all is zero."""
+    """Motion with the largest rank, the first of equal ones; None if all ranks are zero.
+
+    Raise `Unfinished` at the time limit.
+    """
     best: tuple[Rank, Excitation, Run, Driven] | None = None
     for excitation, run, motion in motions(candidates, limits, step_s):
+        candidates.campaign.work.check()
         value = rank(motion)
         if value > ((0.0,) * len(value) if best is None else best[0]):
             best = value, excitation, run, motion

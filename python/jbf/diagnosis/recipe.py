@@ -38,7 +38,7 @@ from jbf.diagnosis.verdict import (
     limitations,
     verdict,
 )
-from jbf.diagnosis.which_law import LawTried, comparable, simpler_law, which_law
+from jbf.diagnosis.which_law import LawTried, comparable, followed, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
@@ -196,11 +196,13 @@ def _diagnose(
                 continue
         best = answer
     assert best is not None
+    unfit = followed(recorded, clock)[1] if no_law else {}
     first = [t for t in laws if t.law == best.model.law]
     return replace(
         best,
         laws=(*first, *(t for t in laws if t not in first)),
         not_tried=no_law | best.not_tried,
+        unfinished=(*(name for name in no_law if name not in unfit), *best.unfinished),
         elapsed_s=time.monotonic() - begun,
     )
 

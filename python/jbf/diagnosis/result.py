@@ -59,8 +59,8 @@ class Diagnosis(Result):
         Effects that are compatible with the law but not testable in these runs, with reasons. Also
         laws, effects and parts of the diagnosis that exceeded the computing budget or a time limit.
     unfinished
-        Names in `not_tried` of the effects and parts of the diagnosis that exceeded the budget or
-        the time limit; empty for a complete diagnosis.
+        Names in `not_tried` of the laws, effects and parts of the diagnosis that exceeded the
+        budget or the time limit; empty for a complete diagnosis.
     not_detectable
         Effects that are not detectable in these runs at their typical strength.
     level

@@ -24,7 +24,7 @@ Columns = dict[str, Array]
 
 
 def as_recorded(run: Columns) -> str:
-    """Return a run as CSV without changes."""
+    """Return the CSV text of a run without artefacts."""
     return table(run)
 
 

@@ -154,7 +154,7 @@ def motion_of(effect: Effect, speed_times: float = 1.0, load_times: float = 1.0)
 
 
 def models_of(effect: Effect) -> tuple[jbf.Model, jbf.Model]:
-    """Return the models without an effect and with it."""
+    """Return two models that differ by one effect, the model without the effect first."""
     what = shown(effect)
     of_effect = {f"{effect.name}.{name}": value for name, value in what.values.items()}
     law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)

@@ -199,7 +199,7 @@ TAIL = """\
 
 
 def main() -> int:
-    """Write the page and pictures, or check the text."""
+    """Write the page and its pictures; with `--check`, return 1 if the page is out of date."""
     if "--check" in sys.argv[1:]:
         return PAGE.read_text(encoding="utf-8") != page(drawn=False)
     IMAGES.mkdir(exist_ok=True)

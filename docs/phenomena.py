@@ -27,7 +27,7 @@ def motion(time_s: np.ndarray, position_m: np.ndarray) -> jbf.Run:
 
 
 def stribeck(ax: Axes) -> None:
-    """Draw a steady Stribeck curve and its parts."""
+    """Draw a steady Stribeck curve, and its Coulomb and viscous friction."""
     v = np.linspace(1e-5, 0.1, 1000)
     law = jbf.Model(RIG, "stribeck", parameters=STRIBECK)
     ax.plot(1e3 * v, law.steady_friction(v), color="tab:red", label="Stribeck curve")

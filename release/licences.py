@@ -39,7 +39,7 @@ class Library:
 
     @property
     def row(self) -> str:
-        """Row of the library in the table."""
+        """Row of the licence table: name, version and licence of the library."""
         return f"| `{self.name}` | {self.version} | {self.licence} |"
 
 

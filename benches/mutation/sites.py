@@ -53,7 +53,7 @@ class Fault:
 
     @property
     def name(self) -> str:
-        """Name of the mutant in the record."""
+        """Name of the mutant: file, position, operator and occurrence."""
         return f"{self.file}:{self.line}:{self.column} {self.operator} {self.occurrence}"
 
     def applied(self, source: str) -> str:

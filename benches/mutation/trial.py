@@ -44,7 +44,7 @@ class Trial:
         return self.word in ("caught", "timeout")
 
     def row(self) -> dict[str, Any]:
-        """Return the result as a line of the record."""
+        """Return the result of the mutant as a dictionary for a JSON line."""
         return asdict(self)
 
 

@@ -55,7 +55,7 @@ def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
 
 
 def recorded(row: Row) -> bool:
-    """Return True if the recording has an artefact other than starts and stops between samples."""
+    """Return True if the campaign of a row has recording artefacts; `off_grid` is not one."""
     return set(row["artefacts"]) != {"off_grid"}
 
 

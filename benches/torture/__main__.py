@@ -100,7 +100,7 @@ def tried(seed: int, limit_s: float) -> dict[str, object]:
 
 
 def kept(path: Path | None) -> list[dict[str, object]]:
-    """Read the results of a record; incomplete lines are skipped."""
+    """Read the rows that earlier runs wrote to a file; incomplete lines are skipped."""
     rows = []
     for line in path.read_text("utf-8").splitlines() if path is not None and path.exists() else []:
         try:

@@ -56,7 +56,7 @@ pub enum Start {
     /// Temperature for which the viscosity of the rig is given, otherwise the mean recorded
     /// temperature, C.
     ReferenceTemperature,
-    /// Small fraction of the largest recorded force.
+    /// Half-width of a load-cell hysteresis: a small fraction of the largest recorded force.
     CellPlay,
     /// Cubic coefficient that corresponds to a small nonlinearity at the largest recorded force.
     CellCubic,

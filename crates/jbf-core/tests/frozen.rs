@@ -95,7 +95,10 @@ fn errors<T: Real, L: Law<f64>>(
     squares.map(|square| square.sqrt() / size)
 }
 
-/// Asserts that a loop recovers, with a friction model with effects and with one without effects.
+/// Asserts that the tracking error recovers after the fault in a position and in a velocity loop.
+///
+/// The compensator uses the law with its effects. A law without effects is also tested in the
+/// compensator for a law alone.
 fn comes_back<T: Real, A: Named<T>, B: Named<f64>>(values: &[f64], effects: &[(&str, &[f64])]) {
     for (control, named) in [
         (Control::Position, "position"),

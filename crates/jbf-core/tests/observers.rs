@@ -152,7 +152,7 @@ fn observer_gain_whose_guard_exceeds_every_speed_is_refused() {
 }
 
 #[test]
-fn learned_level_is_limited() {
+fn learned_level_stays_at_its_limit_if_friction_exceeds_it() {
     let observer = CoulombObserver::<f32>::new(0.01, 1.0, 457.0, 2.0, DT_S).unwrap();
     let mut state = State::default();
     for _ in 0..100_000 {

@@ -61,9 +61,10 @@ pub struct ReadingErrors {
 /// Largest numbers of EM passes of [`estimate`].
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
-    /// Passes with constant factors of the intensity, before the others.
+    /// First passes, in which the factors of the intensity are constant.
     pub normal: usize,
-    /// Passes with the t distribution, in which the factors are estimated.
+    /// Further passes with Student-t process noise, in which the factor of the intensity in each
+    /// step is estimated.
     pub robust: usize,
 }
 

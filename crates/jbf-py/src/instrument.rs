@@ -11,11 +11,10 @@ use pyo3::prelude::*;
 /// Number of parameters per pass; an instrument has few parameters.
 const LANES: usize = 4;
 
-/// Computes the reading (N) for a force (N) at times (s) that is linear between the samples, and
-/// its derivatives.
+/// Computes the reading (N) of an instrument, and its derivatives with respect to the parameters.
 ///
-/// The derivatives are with respect to every parameter, shape (n, parameters). `effects` are pairs
-/// of a name and its parameter values.
+/// The force (N) is sampled at times (s), and is linear between the samples. `effects` contains the
+/// name and the parameter values of each effect. The derivatives have shape (n, parameters).
 #[pyfunction]
 #[allow(clippy::type_complexity)]
 pub fn read_force<'py>(

@@ -86,7 +86,14 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser(words: Sequence[str] | None = None) -> Parser:
-    """Build the argument parser, complete or only with the commands that these words need."""
+    """Build the argument parser of jbf.
+
+    Parameters
+    ----------
+    words
+        Words of the command line; only the commands that they may require get their arguments.
+        None to build the complete parser.
+    """
     from jbf._core import __version__
 
     top = Parser(
@@ -118,7 +125,7 @@ def parser(words: Sequence[str] | None = None) -> Parser:
 
 
 def _needed(words: Sequence[str]) -> Collection[str]:
-    """Names of the commands whose arguments these words may require."""
+    """Names of the commands whose arguments the words of a command line may require."""
     if words and words[0] in COMMANDS:
         return words[:1]
     return () if words and words[0] in ("-h", "--help", "--version") else COMMANDS

@@ -106,7 +106,7 @@ def _files(options: DiagnoseOptions, name: str, result: Diagnosis | JbfError) ->
 
 
 def _page(result: Diagnosis | JbfError) -> dict[str, Any]:
-    """JSON data of one campaign: its diagnosis or its error."""
+    """JSON object of one campaign: its diagnosis or its error."""
     return {"error": str(result)} if isinstance(result, Exception) else result.to_dict()
 
 

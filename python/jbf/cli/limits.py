@@ -84,7 +84,7 @@ class LimitOptions:
         from jbf.diagnosis import Limits
 
         def given(option: str, text: str | None, unit: str) -> float | None:
-            """Number of an option in a unit; None if the option was not given."""
+            """Convert the text of an option to a number in a unit; None if it was not given."""
             return None if text is None else number_in(unit, text, option)
 
         low, high = (number_in("N", load, LOADS) for load in self.loads or ("0", "0"))

@@ -191,13 +191,13 @@ def write(texts: Mapping[str, str]) -> None:
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:
-    """Print a message on standard output, unless an output file uses it or it is closed."""
+    """Print a message on standard output, unless this is closed or is the path of an output."""
     if STDOUT not in outputs.values() and sys.stdout is not None:
         _print(printable(text) + "\n")
 
 
 def complain(text: object) -> None:
-    """Print one line on stderr, if it is open."""
+    """Print one line on standard error, unless this is closed."""
     if sys.stderr is not None:
         print(f"jbf: {printable(str(text))}", file=sys.stderr)
 

@@ -25,7 +25,7 @@ def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[st
     done = 0
 
     def case(name: str, changed: Tables | None = None) -> tuple[str, Tables]:
-        """Report progress, and return the case with its tables."""
+        """Report progress, and return the name and the complete tables of a case."""
         nonlocal done
         done += 1
         if report is not None:

@@ -128,7 +128,7 @@ class Result(SharedResult):
         return self.response - self.reference
 
     def _counting(self, error: Array) -> Array:
-        """Values of an error after the skipped start."""
+        """Samples of an error signal after the skipped start of the run."""
         return error[self.time_s >= self.task.skip_s - 1e-9]
 
     @property
@@ -259,7 +259,7 @@ def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:
 def _reference(
     task: Task, bench: Bench, n: int, given: tuple[npt.ArrayLike, npt.ArrayLike] | None
 ) -> tuple[Array, Array]:
-    """Reference and its rate of change at each step."""
+    """Reference (rad or rad/s) and its rate of change, one value per time step."""
     if given is None and task.wave == RECORDED:
         raise InputError(problem="a recorded task has no wave", remedy="give its reference")
     if given is None:

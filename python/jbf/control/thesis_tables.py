@@ -132,7 +132,7 @@ class Tables:
 
 
 def _run_rows(work: Callable[[Task], Result], tasks: Mapping[str, Task] = TASKS) -> list[Result]:
-    """Apply `work` to the tasks of all rows in parallel."""
+    """Run `work` for each task in parallel, and return the results in the order of the tasks."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(work, tasks.values()))
 

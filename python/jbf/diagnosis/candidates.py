@@ -268,7 +268,7 @@ class Candidates:
             next(done)
 
     def converge(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Return the converged solution of the fit of these effects."""
+        """Return the converged solution of the fit of the law with these effects."""
         fitted = self.fitted(effects)
         if fitted.state != "converged":
             fitted.solution = settle(fitted.problem, self.rank(effects, near))

@@ -132,7 +132,7 @@ class Policy:
         return changed
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all values by dotted name, JSON-serialisable."""
+        """Return the values of all fields by dotted name, JSON-serialisable."""
         return {name: getattr(owner, leaf) for name, owner, leaf, _ in _numbers(self)}
 
     @classmethod

@@ -217,7 +217,19 @@ def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
 
 
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
-    """Whether the best law without effects may predict better than another law with its effects."""
+    """Whether a further law may predict better than the best diagnosed law with its effects.
+
+    Parameters
+    ----------
+    law
+        Name of the further law, which is evaluated without effects.
+    best
+        Diagnosis of the best law so far.
+    laws
+        Held-out errors of all laws without effects.
+    margin
+        Factor by which the held-out RMS of the further law must be smaller.
+    """
     alone = {t.law: t.held_out_rms for t in laws}
     first, last = best.steps[0], best.steps[-1]
     improved = last.held_out_rms / max(first.held_out_rms, 1e-300)

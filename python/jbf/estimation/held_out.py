@@ -68,7 +68,7 @@ class HeldOutPart:
     residuals: tuple[Array, ...]
 
     def without(self, runs: Collection[int]) -> HeldOutPart:
-        """Return the part without the given runs."""
+        """Return the held-out part without the given runs."""
         kept = [k for k, i in enumerate(self.runs) if i not in runs]
         return HeldOutPart(
             tuple(self.runs[k] for k in kept),

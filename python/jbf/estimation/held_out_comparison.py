@@ -62,7 +62,7 @@ class _Moments:
 
     @classmethod
     def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Moments:
-        """Compute the sums for one held-out part."""
+        """Compute the moments of the whitened residual and Jacobian of a held-out part."""
         jacobian = [solution.jacobian[i] for i in part.runs]
         e, j = samples.only(part.runs).stacked(part.residuals, jacobian, noise)
         # Select after the whitening, because the first innovation of a held-out part depends on

@@ -312,7 +312,7 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
         samples, noise = near.samples, near.noise
 
         def square(values: Array, samples: Samples = samples) -> float:
-            """Sum of squares of weighted residuals, N^2, at parameter values."""
+            """Sum of squares of the weighted residuals, N^2, for given parameter values."""
             return problem.square(values, samples)
 
         lower, upper = problem.lower[index], problem.upper[index]

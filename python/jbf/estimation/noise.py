@@ -52,7 +52,7 @@ class Noise:
         return _core.first_order_filter((1.0, -phi), -phi * white_share, values)
 
     def coloured(self, innovations: Array, step_s: float) -> Array:
-        """Noise with the given innovations; the inverse of :meth:`innovations`."""
+        """Generate noise from its innovations, shape (n,) or (n, k), at uniform steps."""
         if self.white:
             return innovations
         phi, white_share = self._coefficients(step_s)
@@ -64,7 +64,7 @@ class Noise:
         return self.colour <= 0.0 or self.memory_s <= 0.0
 
     def _coefficients(self, step_s: float) -> tuple[float, float]:
-        """Autoregressive coefficient of the coloured part for one step, and 1 - colour."""
+        """Autoregressive coefficient phi for one step, and moving-average coefficient over phi."""
         return float(np.exp(-step_s / self.memory_s)), 1.0 - self.colour
 
     def coloured_share(self, step_s: float) -> float:

@@ -135,7 +135,7 @@ def moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
     """
 
     def off(motion: EstimatedMotion) -> tuple[EstimatedMotion, Array]:
-        """The motion with one component changed, and the change."""
+        """Return the motion with a step added to its component `axis`, and the step, shape (n,)."""
         errors = motion.errors
         assert errors is not None
         step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))

@@ -119,7 +119,11 @@ class RandomEffects:
         return np.asarray(self.directions[run] @ size)
 
     def _basis(self, run: int, weight: Array, step_s: float, noise: Noise) -> tuple[Array, Array]:
-        """Orthonormal basis of the random effects of a run, (n, q), and their sizes, (q,)."""
+        """Left singular vectors, (n, q), and singular values, (q,), of `_innovations` for a run.
+
+        The correlation of the run due to the random effects is the identity matrix plus
+        ``u diag(size^2) u'``.
+        """
         n = self._innovations(run, weight, step_s, noise)
         u, size, _ = np.linalg.svd(n, full_matrices=False)
         return u, size

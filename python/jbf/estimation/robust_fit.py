@@ -90,7 +90,7 @@ def student(residual: Array) -> Array:
 
 
 def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]) -> Solution:
-    """M-estimate with these weights by iteratively reweighted least squares."""
+    """M-estimate for a weight function by iteratively reweighted least squares."""
     solution, samples = start, start.samples
     for _ in range(ROUNDS):
         flat = np.abs(samples.flat(solution.residuals))

@@ -253,7 +253,7 @@ def other_peaks(
     scanned = scanned[(scanned > lower) & (scanned < upper)]
 
     def with_value(value: float) -> Array:
-        """Parameter values in which the scanned parameter has this value."""
+        """Return a copy of the parameter values with another value of the scanned parameter."""
         moved: Array = values.copy()
         moved[index] = value
         return moved

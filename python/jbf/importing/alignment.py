@@ -287,7 +287,11 @@ def _date_ns(
 
 
 def _counts_from_start(table: Table, node: Node, places: Mapping[str, tuple[Table, str]]) -> bool:
-    """Whether the times of a table count from the date of its first instant."""
+    """Whether the times of a clock expression count from the start date of their table.
+
+    This requires that the expression `node` refers to one column only, which is the clock of the
+    table or its only column of dates.
+    """
     columns = [table.column(places[r.column][1]) for r in references(node)]
     if len(columns) != 1:
         return False

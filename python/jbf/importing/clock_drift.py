@@ -180,7 +180,7 @@ class _Problem:
         )
 
     def _start(self) -> tuple[float, float]:
-        """Best offset and drift on a grid of trial values."""
+        """Offset, s, and drift with the largest absolute correlation of the records, on a grid."""
         lobe = self.coarse.lobe_s
         spacing = max(self.step / TRIAL_OFFSETS_PER_STEP, lobe / 50.0)
         reach = np.arange(0.0, lobe + spacing, spacing)
@@ -198,9 +198,14 @@ class _Problem:
         return best
 
     def _model(self, offset: float, drift: float) -> tuple[Array, Array, Array, Array]:
-        """Slower record, faster record at its samples, and the derivatives by offset and drift.
+        """Values of both records at the samples of the slower record, and their derivatives.
 
-        The derivatives are those of the faster record.
+        Returns
+        -------
+        slow, fast
+            Values of the slower record, and of the faster record interpolated at the same instants.
+        by_offset, by_drift
+            Derivatives of `fast` with respect to the clock offset and to the clock drift.
         """
         slow, fast, by_offset, by_drift = [], [], [], []
         for window in self.windows:

@@ -110,7 +110,7 @@ def _pieces(first_s: float, last_s: float) -> Iterator[tuple[float, float]]:
 
 
 def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Offset:
-    """Estimate the offset from a piece of the other record."""
+    """Estimate the clock offset from the part of `other` between two times."""
     main_s, last_s = span(main)
     longest = max(last_s - main_s, end_s - begin_s)
     step = max(min(usual_step(main), usual_step(other)), longest / POINTS)

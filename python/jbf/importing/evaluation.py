@@ -192,7 +192,7 @@ def _called(node: Call, inner: Quantity) -> Quantity:
 
 
 def _root(inner: Quantity) -> Value:
-    """Square root of the value of a quantity."""
+    """Square root of a dimensionless quantity."""
     if inner.unit.dimensions != NONE:
         raise InputError(
             problem=f"the square root of {inner.unit.text} has no unit",

@@ -200,7 +200,7 @@ def _spool(
 def _values(
     channel: Channel, values: Mapping[str, Values], units: Mapping[str, str], words: _Words
 ) -> Array:
-    """Converted values of a channel in a block of rows."""
+    """Values of a channel in a block of rows, converted to the unit of the channel."""
     if channel.key in (*CUTTING_COLUMNS, SIGNAL_COLUMN):
         read = [values[reference.column] for reference in references(channel.node)]
         if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):

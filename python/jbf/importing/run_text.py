@@ -81,7 +81,7 @@ class _Part:
 
     @property
     def has_rows(self) -> bool:
-        """Whether there are further rows after those that were read."""
+        """Whether rows of the run have not been read yet."""
         return self.next < self.end
 
     @property

@@ -125,7 +125,7 @@ class Stream:
                 first += len(part)
 
     def at(self, row: int) -> float:
-        """Time of a row, s."""
+        """Time, s, at a row index."""
         return float(self.read(row, row + 1)[0, 0])
 
     def rows_between(self, segment: int, first_s: float, last_s: float) -> tuple[int, int]:

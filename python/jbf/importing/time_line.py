@@ -103,7 +103,7 @@ class TimeLine:
         return list(zip(self._starts, [*self._starts[1:], rows], strict=True))
 
     def dropped(self) -> list[Dropped]:
-        """Omitted rows and the reasons."""
+        """Number of omitted rows for each reason."""
         omitted = []
         if self._repeats:
             omitted.append(Dropped(self._repeats, "time repeats", self._first_repeat))

@@ -36,7 +36,7 @@ def summary_of(effect: Effect, terms: Quantities) -> str:
 
 
 def limits_of(effect: Effect, terms: Quantities) -> str:
-    """Describe the limits of an effect, worded for the kind of machine."""
+    """Describe the limits of validity of an effect, worded for the kind of machine."""
     if terms.motion == "bearing":
         return effect.limits
     return _in_terms_of(effect.limits, terms)

@@ -122,7 +122,7 @@ class Bench:
         return runs
 
     def _trimmed(self, run: Run) -> Run:
-        """Part of a run within its trim."""
+        """Part of a run within its time limits in `trims`; the run itself without limits."""
         if run.name not in self.trims:
             return run
         first, last = self.trims[run.name]

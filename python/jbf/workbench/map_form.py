@@ -173,7 +173,17 @@ def _quoted(text: str) -> str:
 def _sections(
     before: Map, columns: Mapping[str, str], rig: Mapping[str, Any]
 ) -> dict[str, dict[str, Any]]:
-    """Rig sections of the changed map."""
+    """Sections of the rig in a map with replaced columns and rig values.
+
+    Parameters
+    ----------
+    before
+        Map before the replacement.
+    columns
+        New expressions of the columns, by column of a run.
+    rig
+        New values of the rig by dotted name, such as `drive.pitch_m`.
+    """
     filled = {k: v for part in before.rig.values() for k, v in part.items() if v != OPEN}
     sections = {name: dict(part) for name, part in before.rig.items()}
     if set(columns) != set(before.columns) or not before.rig:
@@ -202,7 +212,7 @@ def _put(section: Any, content: Mapping[str, Any]) -> None:
 
 
 def expression_of(row: Mapping[str, Any]) -> str:
-    """Map expression for a row of the form."""
+    """Expression in the map for the column, unit and sign in a row of the form."""
     column = str(row["column"]).replace("`", "")
     unit = str(row.get("unit") or "").strip()
     return f"{'-' if row.get('turned') else ''}`{column}`{f' [{unit}]' if unit else ''}"

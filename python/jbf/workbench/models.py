@@ -38,7 +38,7 @@ class Models:
         return number
 
     def node(self, number: int | None = None) -> dict[str, Any]:
-        """Data of a model; by default of the current one.
+        """Return the data of the model with this number, by default of the current model.
 
         Raises
         ------
@@ -73,7 +73,7 @@ class Models:
         return [{key: node.get(key) for key in keys} for node in reversed(line)]
 
     def to_dict(self) -> dict[str, Any]:
-        """Data of the tree for the page, without large contents."""
+        """Data of the model tree for the page, without the contents named in `LARGE`."""
         return {
             "current": self.current,
             "compared": self.compared,

@@ -234,7 +234,7 @@ class Session:
         return {name: place / f"{index}.npy" for index, name in enumerate(names)}
 
     def model(self, number: int) -> Model:
-        """Model with a number in the tree."""
+        """Load the model with this number in the tree of models."""
         text = str(self.models.node(number)["model"])
         if number not in self._loaded:
             file = Path(self._kept.name) / f"model-{number}.toml"

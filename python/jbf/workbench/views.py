@@ -249,7 +249,7 @@ def signature(
 
 
 def _usual(base: Model, effect: str) -> dict[str, float]:
-    """Parameters of an effect at its typical strength."""
+    """Parameter values of a model with an additional effect of typical strength."""
     values = {name: p.value for name, p in base.parameters.items()}
     page = catalogue()[effect]
     return {**values, **{f"{effect}.{p.name}": p.starts[0] for p in page.parameters}}

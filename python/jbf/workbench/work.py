@@ -144,7 +144,7 @@ def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
     if order.kind == "round":
 
         def fitted_as(fit: Fit, comparison: Comparison) -> None:
-            """Send the fitted model before its candidates are tested."""
+            """Send the fitted model to the page before the candidate effects are tested."""
             if part is not None:
                 part(
                     {

@@ -92,7 +92,7 @@ def residual_of_least_squares(
 
 
 @pytest.mark.parametrize("free", [("F_c", "F_v"), ("F_c",), ("F_v",)])
-def test_effect_force_excludes_the_fit_of_free_parameters(
+def test_explained_residual_excludes_the_part_that_free_parameters_reproduce(
     full: Comparison, runs: list[Run], free: tuple[str, ...]
 ) -> None:
     """The derivatives are sign(v) and v; held parameters and uncounted samples are excluded."""

@@ -131,7 +131,9 @@ def test_run_without_a_period_is_excluded_from_recurring_errors() -> None:
 
 
 @pytest.mark.parametrize(("pairs", "found"), [(99, False), (100, True)])
-def test_recurring_error_requires_100_pairs_of_samples_in_a_run(pairs: int, found: bool) -> None:
+def test_recurring_error_is_not_reported_for_a_run_with_fewer_than_100_sample_pairs(
+    pairs: int, found: bool
+) -> None:
     n = PERIOD + pairs
     assert bool(recurring_in(5.0 * wave(n))) == found
     (both,) = recurring_in(5.0 * wave(n), wave(3000))

@@ -117,7 +117,7 @@ def test_wave_is_not_reported_as_a_ripple_if_all_runs_have_one_speed() -> None:
 
 
 @pytest.mark.parametrize(("runs", "found"), [(2, 0), (3, 1)])
-def test_ripple_requires_three_runs(runs: int, found: int) -> None:
+def test_ripple_is_not_reported_with_fewer_than_three_runs(runs: int, found: int) -> None:
     campaign = reversing(SPEEDS_M_S[:runs])
     assert len(ripples_in(campaign, waves(campaign, [1.0] * runs))) == found
 

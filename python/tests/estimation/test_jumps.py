@@ -205,7 +205,7 @@ def test_error_of_the_instant_is_limited_to_that_of_a_uniform_distribution_over_
     np.testing.assert_allclose(found[4:], STEP_S * 10.0 / np.sqrt(12.0), rtol=0.01)
 
 
-def test_samples_of_unknown_sign_next_to_a_reversal_share_its_error() -> None:
+def test_samples_of_unknown_sign_at_a_reversal_have_the_timing_error_of_the_reversal() -> None:
     error = np.array([9.0, 1e-3, 5e-3, 1e-3, 2e-3, 9.0, 9.0, 9.0])
     p = prepared([0.2, 0.2, 0.1, -0.1, -0.2, -0.2, -0.2, -0.2], error=error, unknown=(2, 3))
     found = timing_errors(p, ramp(p), 1e-9)

@@ -266,7 +266,9 @@ def test_ranking_plot_has_descending_gains_and_rejects_unknown_step(diagnosis: D
         jbf.plot.ranking(diagnosis, 7)
 
 
-def test_power_curve_passes_through_eighty_and_ninety_five_percent(diagnosis: Diagnosis) -> None:
+def test_power_curve_agrees_with_the_detection_probability_at_two_sizes(
+    diagnosis: Diagnosis,
+) -> None:
     """80 % of effects of 0.1 rad, or 2 % of the friction, are detected, and 95 % of 0.13 rad."""
     shares = np.array([0.02, 0.02 * 1.3])
     assert ndtr(deviate(POWER, shares)) == pytest.approx([0.80, 0.95])

@@ -1,4 +1,8 @@
-"""Artefacts of the noise, which is not white or not of constant size."""
+"""Recording artefacts of the noise of the force.
+
+The noise is heavy-tailed or autocorrelated, or its standard deviation depends on the force or the
+run.
+"""
 
 from __future__ import annotations
 

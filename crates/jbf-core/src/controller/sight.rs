@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn jump_or_invalid_target_invalidates_measurements_for_the_patience() {
+    fn encoder_is_faulty_for_the_patience_after_a_jump_or_an_invalid_target() {
         for (jumped, target) in [(true, Status::OK), (false, Status::NOT_FINITE)] {
             let mut state = State::default();
             let (status, blind) = SIGHT.step(&mut state, &sample(0, jumped), 0.0, false, target);

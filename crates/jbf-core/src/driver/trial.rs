@@ -66,7 +66,8 @@ pub(super) enum Verdict<T> {
     Touches(f64),
     /// The step began on the other side of eps_tr than assumed.
     WrongSide,
-    /// The step is accepted; the two polynomials are the position along it.
+    /// The step is accepted; the polynomials are the dense output of the two coordinates of the
+    /// journal position.
     Sound([[T; 5]; 2]),
 }
 

@@ -87,7 +87,7 @@ places! {
     /// Adapter of an effect that replaces the jump at a reversal by a deflection, after all other
     /// effects on the contact.
     AsBristle: Bristle at Stage::Contact,
-    /// Adapter of friction in addition to that of the bearing.
+    /// Adapter of an effect that adds a friction force to that of the bearing.
     Beside: OtherFriction at Stage::Other,
     /// Adapter of an effect of the instrument, between the force and its record.
     InInstrument: Instrument at Stage::Instrument,

@@ -65,15 +65,15 @@ pub(super) const fn number(
     Parameter::new(name, "-", meaning, bounds, starts).log()
 }
 
-/// Description of the Coulomb (kinetic) friction.
+/// Parameter `F_c`: Coulomb (kinetic) friction.
 pub(super) const F_C: Parameter =
     force("F_c", "Coulomb (kinetic) friction", &[10.0]).start(Start::Kinetic);
-/// Description of the static friction.
+/// Parameter `F_s`: static (breakaway) friction.
 pub(super) const F_S: Parameter =
     force("F_s", "static (breakaway) friction", &[12.0]).start(Start::Breakaway);
-/// Description of the viscous friction coefficient.
+/// Parameter `F_v`: viscous friction coefficient.
 pub(super) const F_V: Parameter = damping("F_v", "viscous friction", &[10.0]).start(Start::Viscous);
-/// Description of the Stribeck speed.
+/// Parameter `v_s`: Stribeck speed.
 pub(super) const V_S: Parameter = speed(
     "v_s",
     "Stribeck speed: scale of the decrease of friction",

@@ -96,7 +96,8 @@ fn constant_weight_on_an_inclined_axis_adds_to_the_transmitted_force() {
     }
 }
 
-/// With presliding, this friction deflects after a reversal like the dry friction of the law.
+/// With presliding, friction proportional to the transmitted force changes gradually after a
+/// reversal, like the dry friction of the law.
 #[test]
 fn loss_is_deflected_by_presliding_like_dry_friction() {
     let sines = Sines::two_way(1.0);

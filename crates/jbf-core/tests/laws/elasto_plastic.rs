@@ -10,7 +10,8 @@ const F_C: f64 = 8.0;
 const SIGMA: f64 = 2e5;
 const SPEED: f64 = 0.01;
 
-/// After a reversal, the force is linear up to breakaway and then exponential, for every step.
+/// After a reversal, the force is linear in the displacement up to breakaway and then exponential,
+/// whatever the time step.
 #[test]
 fn friction_after_a_reversal_follows_its_closed_form() {
     for share in [0.0, 0.3, 0.7, 0.999] {

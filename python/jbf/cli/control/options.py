@@ -42,7 +42,7 @@ class BenchOptions:
     seed: int | None
 
     def bench(self) -> Bench:
-        """Bench with these values."""
+        """Bench of Cohn (1998), in which the given options replace its values."""
         from jbf.control.bench import THESIS_BENCH, with_noise
 
         given = _given(self)
@@ -83,7 +83,10 @@ def add_task(parser: Parser) -> None:
 
 @dataclass(frozen=True)
 class TaskOptions:
-    """Task of a loop: a row of the tables of Cohn (1998) with changes, or a recorded motion."""
+    """Task of a control loop: a recorded motion, or a task of Cohn (1998).
+
+    The options that are not None replace the values of the task of Cohn (1998).
+    """
 
     task: str
     motion: str | None
@@ -96,7 +99,7 @@ class TaskOptions:
     skip_s: float | None
 
     def reference(self) -> Task:
-        """Task with a periodic reference: the selected row of the tables, with changes."""
+        """Selected task of Cohn (1998), in which the given options replace its values."""
         from jbf.control.task import TASKS
 
         if self.task not in TASKS:
@@ -107,7 +110,7 @@ class TaskOptions:
 
 
 def _given(options: BenchOptions | TaskOptions) -> dict[str, Any]:
-    """Options that have a value, by name."""
+    """Values of the options that are not None, by name."""
     return {name: value for name, value in asdict(options).items() if value is not None}
 
 

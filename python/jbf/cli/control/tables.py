@@ -1,4 +1,4 @@
-"""`jbf control tables`: Tables 6.1 and 6.2 of Cohn (1998), fitted and predicted."""
+"""`jbf control tables`: reproduce Tables 6.1 and 6.2 of Cohn (1998) by simulation."""
 
 from __future__ import annotations
 

@@ -6,8 +6,9 @@ the two gains. The difference of the gains is normally distributed with a varian
 mean. An effect is distinguishable if it is detected and its gain exceeds that of every rival by the
 required difference.
 
-If one of the two effects moves jumps, the samples next to these jumps do not distinguish them. Both
-effects are then compared at the samples that both models use.
+An effect such as backlash shifts the instants at which friction jumps. Its model excludes the
+samples next to these jumps, or reduces their weights. Two effects are compared with the smaller of
+their weights at each sample, that is, on the samples that both models use.
 """
 
 from __future__ import annotations

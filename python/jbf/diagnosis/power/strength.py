@@ -109,7 +109,7 @@ class PresentRuns:
         return self._at(model, times)[1]
 
     def _at(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
-        """Cached result of `_changed`."""
+        """Change and relative sample weights as returned by `_changed`, with a cache."""
         last = self._last.get(model.name)
         if last is None or last[0] != times:
             last = self._last[model.name] = (times, *self._changed(model, times))

@@ -129,7 +129,7 @@ def disagreement(
 
 
 def _of(problem: Problem, effects: Collection[str]) -> Mask:
-    """Mask of the search variables that belong to these effects."""
+    """Mask of the search variables that are parameters of the given effects."""
     return np.array([problem.names[i].split(".")[0] in effects for i in problem.open], dtype=bool)
 
 

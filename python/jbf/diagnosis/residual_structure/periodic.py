@@ -250,7 +250,15 @@ def _ripple_size(
 
 
 def _describe_ripple(campaign: Campaign, pitch: float, amplitude: float, along: bool) -> str:
-    """Describe a ripple; `along` is a force in the direction of motion."""
+    """Describe a ripple in one line.
+
+    Parameters
+    ----------
+    pitch, amplitude
+        Spatial period and amplitude of the ripple.
+    along
+        True for a ripple of the force in the direction of motion, which is a periodic friction.
+    """
     rig, quantities = campaign.rig, campaign.rig.quantities
     if quantities.motion == "rotary":
         often = f"{2.0 * np.pi / pitch:.4g} per revolution"

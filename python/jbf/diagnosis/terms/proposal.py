@@ -76,7 +76,7 @@ class Model:
 
     @property
     def campaign(self) -> Campaign:
-        """The campaign with the terms accepted so far."""
+        """Campaign with the terms that were accepted so far."""
         return self.problem.campaign
 
 

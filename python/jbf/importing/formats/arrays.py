@@ -189,7 +189,7 @@ def table_name(columns: Sequence[str]) -> str:
 
 
 def _several(lengths: Mapping[int, None]) -> bool:
-    """Whether more than one length is longer than one sample."""
+    """Whether at least two of the lengths of the vectors exceed one sample."""
     return sum(length > 1 for length in lengths) > 1
 
 

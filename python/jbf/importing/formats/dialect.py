@@ -73,7 +73,7 @@ class Dialect:
         return [cell.strip() for cell in self.split(line)]
 
     def split(self, line: str) -> list[str]:
-        """Split a line into unchanged cells."""
+        """Split a line at the delimiter into cells, which may have surrounding blanks."""
         if self.delimiter == " ":
             return line.split()
         if '"' not in line:

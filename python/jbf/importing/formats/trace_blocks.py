@@ -35,7 +35,7 @@ def open_trace(path: Path, lines: Iterable[str]) -> Source:
 
 
 def _blocks(path: Path, lines: Iterable[str]) -> Iterator[Signal]:
-    """Yield each variable of a trace export with its times."""
+    """Yield the signal of each variable in a trace export, with its sample times."""
     name, rows = "", list[list[float]]()
     for number, line in enumerate(lines, 1):
         if (variable := VARIABLE.match(line)) is not None:

@@ -28,9 +28,10 @@ class Smoothed:
     readings, errors
         Readings, and their estimated errors.
     corners
-        Factor of the noise intensity in each step, shape (n - 1,).
+        Factor on the intensity of the process noise in each step, shape (n - 1,). It is large at
+        corners, where the motion changes abruptly.
     own_corners
-        The same factors, estimated from the readings of the motion alone.
+        Factors as in `corners`, but estimated without the forces, from the readings of the motion.
     speed
         Speed at each sample, for the effect of the errors of the time stamps, shape (n,).
     mean, covariance

@@ -211,13 +211,7 @@ def date_outcome(read: Callable[[str], Any], cell: str, wanted: int | None) -> O
 
 
 def compare_dates(stamps: int) -> None:
-    """Print how many dates jbf and dateutil read correctly, and the time for many time stamps.
-
-    Parameters
-    ----------
-    stamps
-        Number of time stamps for the comparison of the times.
-    """
+    """Print which dates jbf and dateutil read correctly, and their times for `stamps` stamps."""
     from jbf.importing.formats.dates import Instants, day_or_month_first
     from jbf.importing.formats.table import BLOCK
 

@@ -37,7 +37,7 @@ def _ratios(ax: Axes, values: np.ndarray, lines: dict[str, list[float]], label: 
 
 
 def settled() -> Figure:
-    """Plot the ratios to the results of Cohn (1998) against friction scale and belt stiffness."""
+    """Plot RMS errors relative to Cohn (1998) against friction scale and belt stiffness."""
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     bench, model = control.THESIS_BENCH, control.thesis_model()

@@ -70,7 +70,7 @@ class Hidden(Protocol):
         """Additional viscous friction, in the direction of motion, N m or N."""
 
     def factor(self, at: Course) -> float:
-        """Factor on all friction."""
+        """Factor on the total friction at a state of the motion."""
 
     def push(self, at: Course) -> float:
         """Force that the drive must overcome, independent of the direction of motion."""

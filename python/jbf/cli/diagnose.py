@@ -176,7 +176,7 @@ def run(options: DiagnoseOptions) -> int:
 
 
 def _text(diagnosis: Diagnosis, options: DiagnoseOptions, held_out: list[str]) -> str:
-    """Text that `jbf diagnose` prints."""
+    """Text that `jbf diagnose` prints: verdict, summary or complete report."""
     from jbf.reporting.diagnosis_summary import MOST_LINES, diagnosis_summary, verdict_line
 
     if options.verbosity.quiet:

@@ -93,7 +93,7 @@ class Binned:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Texts of all bins."""
+        """Label of each bin, such as its interval, as text."""
         return labels(self.axis, self.bins)
 
 
@@ -134,5 +134,5 @@ def label(axis: Axis, b: Bin) -> str:
 
 
 def labels(axis: Axis, bins: tuple[Bin, ...]) -> tuple[str, ...]:
-    """Texts of all bins of an axis."""
+    """Label of each bin of an axis, as text."""
     return tuple(label(axis, b) for b in bins)

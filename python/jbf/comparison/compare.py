@@ -85,7 +85,7 @@ def compare(
 
 
 def _compared(model: Model, runs: Sequence[Run]) -> Comparison:
-    """Compare one model with runs."""
+    """Compare a model with recorded runs that have the columns it requires."""
     for run in runs:
         model.require_columns(run)
     return compare_prepared(model, Campaign.prepare(model.rig, runs))

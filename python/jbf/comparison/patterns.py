@@ -54,7 +54,7 @@ class Failure:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Texts of all bins."""
+        """Label of each bin of the pattern, as text."""
         return labels(self.axis, self.bins)
 
     def to_dict(self) -> dict[str, Any]:

@@ -186,7 +186,7 @@ def fit_friction(
 
 
 def _mean_square_root(values: Sequence[float]) -> float:
-    """Root mean square of values."""
+    """Root mean square of a sequence of numbers."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 

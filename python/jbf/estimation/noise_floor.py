@@ -126,7 +126,7 @@ def _rest_squares(resting: Mask, values: Array, settings: NoiseSettings) -> list
 
 
 def _detrended(values: Array) -> Array:
-    """Values minus the straight line fitted to them."""
+    """Subtract the straight line fitted to a sequence of values."""
     place = np.arange(len(values)) - 0.5 * (len(values) - 1)
     centred = values - np.mean(values)
     return np.asarray(centred - place * float(place @ centred) / float(place @ place))

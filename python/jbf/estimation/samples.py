@@ -134,7 +134,7 @@ class Samples:
         return self.within([self.motion.variance_ratio(i) <= 1.0 for i in range(len(self.runs))])
 
     def tested(self) -> Samples:
-        """Return the samples with zero weight for excluded ones."""
+        """Return a copy in which the excluded samples have zero weight."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))
         return replace(self, weight=weight)
 

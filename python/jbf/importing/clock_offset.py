@@ -179,7 +179,7 @@ def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Ma
     size = next_fast_len(len(a) + len(b) - 1, real=True)
 
     def spectrum(values: Array) -> npt.NDArray[np.complex128]:
-        """Zero-padded spectrum of values."""
+        """Fourier transform of a real signal, zero-padded to `size` samples."""
         transform: npt.NDArray[np.complex128] = rfft(values, size)
         return transform
 

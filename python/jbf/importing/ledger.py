@@ -51,7 +51,7 @@ def ledger_of(
 
 
 def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
-    """Ledger entry of one recording."""
+    """Ledger entry of a recording: its file, channels, notes, runs and omitted pieces."""
     file_pieces = [piece for piece in pieces if piece.file == recording.path.name]
     return {
         "file": recording.path.name,
@@ -88,7 +88,7 @@ def _further_files(recording: Recording) -> dict[str, Any]:
 
 
 def _span(piece: Piece) -> dict[str, Any]:
-    """Ledger entry of one piece."""
+    """Start and end of a piece, s, and the number of its stretch if it is not the first."""
     content: dict[str, Any] = {"from_s": piece.from_s, "to_s": piece.to_s}
     return content | ({"stretch": piece.segment + 1} if piece.segment else {})
 

@@ -122,7 +122,7 @@ def _quoted(text: str) -> str:
 
 
 def _aligned(lines: list[tuple[str, str]]) -> list[str]:
-    """Lines with their comments in one column."""
+    """Join each line with its comment, and align the comments."""
     width = max((len(line) for line, _ in lines), default=0)
     return [f"{line:<{width}}  # {why}" for line, why in lines]
 

@@ -59,5 +59,5 @@ class Import(Result):
         return read_runs([self.folder / f"{name}.csv" for name in names], self.rig)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the ledger."""
+        """Return the ledger of the import as a dictionary."""
         return dict(self.ledger)

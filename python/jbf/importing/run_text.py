@@ -28,7 +28,7 @@ def run_columns(recording: Recording) -> list[str]:
 
 
 def _written(stream: Stream) -> list[int]:
-    """Indices of the columns of a stream that are written to runs."""
+    """Indices of the columns of a stream that are written to the files of its runs."""
     of_cutting = [at for at, key in enumerate(stream.columns) if key in CUTTING_COLUMNS]
     return [at for at in range(len(stream.columns)) if at not in (*of_cutting, *stream.empty)]
 

@@ -55,7 +55,7 @@ class Registration:
         return cls(kind, function.__name__ if name is None else name, function, tuple(parameters))
 
     def refused(self, problem: str, remedy: str) -> InputError:
-        """Error that names the entry, the problem and the remedy."""
+        """Error for this user-defined law or effect, with a problem and a remedy."""
         return InputError(problem=f"the {self.kind} {quoted(self.name)} {problem}", remedy=remedy)
 
     def check_name(self, built_in: Container[str], reserved: str | None = None) -> None:

@@ -86,7 +86,7 @@ def plane(session: Session, parameters: Parameters) -> Any:
 
 
 def brush(session: Session, parameters: Parameters) -> Any:
-    """Selected samples in all views."""
+    """Statistics and positions of the selected samples, for all views."""
     return views.brushed(
         session, _model(parameters), dict(parameters["selection"]), *_picture(parameters)
     )

@@ -110,7 +110,7 @@ class Draft:
 
     @property
     def step_s(self) -> float:
-        """Interval between stamps, s."""
+        """Interval between the first two time stamps, s."""
         return float(self.stamps[1] - self.stamps[0])
 
 

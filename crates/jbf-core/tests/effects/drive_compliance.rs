@@ -24,8 +24,8 @@ fn angles(f: f64, c: f64, dt_s: f64, steps: u32, motion: impl Fn(f64) -> Motion<
         .collect()
 }
 
-/// Motion at rest of the encoder side, which releases the journal from a hundredth of a radian
-/// beside it.
+/// Motion of the encoder side at rest; the journal is released a hundredth of a radian away from
+/// it.
 fn let_go(t: f64) -> Motion<f64> {
     held(if t == 0.0 { 0.0 } else { 0.01 }, t)
 }

@@ -59,7 +59,7 @@ class Shifted:
 
     @property
     def campaign(self) -> Campaign:
-        """The shifted runs."""
+        """Campaign of the runs after the correction of their delays and clock drifts."""
         return self.problem.campaign
 
 

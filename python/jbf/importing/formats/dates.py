@@ -142,7 +142,10 @@ class Instants:
     def _decoded(
         self, match: re.Match[str], digits: Nanoseconds
     ) -> tuple[Nanoseconds, npt.NDArray[np.bool_]]:
-        """Instants of cells of one shape, and whether each is a valid calendar date."""
+        """Time of each cell of one date format, ns, and whether its date is valid.
+
+        The time counts from 1970, or from midnight if the format has no date.
+        """
 
         def number(group: str, longest: int = 9) -> Nanoseconds:
             begin, end = match.span(group)

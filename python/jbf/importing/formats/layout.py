@@ -281,7 +281,7 @@ def _trimmed(cells: Sequence[str]) -> list[str]:
 
 
 def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
-    """Cells of a row, extended by empty cells to a width."""
+    """Cells of a row, truncated or extended by empty cells to `width` cells."""
     return tuple([*cells, *[""] * width][:width])
 
 

@@ -49,7 +49,7 @@ def _same(name: str, a: Array, b: Array) -> bool:
 
 
 def repeated(first: Run, again: Run) -> Finding:
-    """Finding that a run duplicates another one."""
+    """Finding that the run `again` is identical to the run `first`."""
     words = f"identical to run {first.name} in every sample"
     size = float(len(again))
     return Finding("repeated_run", "friction_n", again.name, size, "samples", "left out", words)

@@ -124,7 +124,7 @@ class Readings:
         return readings, samples, added
 
     def positions(self) -> Readings:
-        """The readings without measured velocities."""
+        """Readings without the measured velocities; the velocities assigned at rest are kept."""
         assigned = self.velocity_shape <= AT_REST
         return replace(self, velocity=np.where(assigned, self.velocity, np.nan))
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from jbf.diagnosis.result import Diagnosis
+from jbf.models.catalogue import find_law
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.reporting.advice import advice_on
-from jbf.reporting.paragraphs import columns, hanging
+from jbf.reporting.paragraphs import WIDTH, columns, hanging
 from jbf.reporting.tables import LEDGER_HEAD, ledger_rows, parameter_rows
 from jbf.reporting.words import conclusion, law_sentence, listed, omitted_words
 
@@ -20,6 +21,12 @@ WIDEST = 100
 FEWEST_PARAMETERS = 4
 MOST_STEPS = 4
 MOST_FINDINGS = 3
+MOST_SENTENCES = 6
+"""Maximum number of lines of the conclusions below the verdict."""
+MOST_OUTLOOK = 4
+"""Maximum number of lines of a recommendation."""
+UNCORRECTED = "none"
+"""Action of a finding that remains in the data."""
 
 
 def verdict_line(diagnosis: Diagnosis) -> str:
@@ -37,16 +44,26 @@ def diagnosis_summary(diagnosis: Diagnosis, most_lines: int = MOST_LINES) -> str
     Parameters
     ----------
     most_lines
-        Maximum number of lines; the last recommendations are omitted first.
+        Maximum number of lines. Kinds of findings are omitted first, then the last
+        recommendations.
     """
-    conclusions = f"{conclusion(diagnosis, '')}{law_sentence(diagnosis)}"
-    above = [_cut(verdict_line(diagnosis)), *_paragraph("", conclusions, 4), "", *_steps(diagnosis)]
-    findings, outlook = _findings(diagnosis), _outlook(diagnosis)
+    sentences = f"{conclusion(diagnosis, '')}{law_sentence(diagnosis)}".strip()
+    conclusions = _paragraph("", sentences, MOST_SENTENCES)
+    above = [_cut(verdict_line(diagnosis)), *conclusions, "", *_steps(diagnosis)]
+    kinds, outlook = MOST_FINDINGS, _outlook(diagnosis)
     # In addition to these: two blank lines, the header of the parameters, those not determined.
-    used = len(above) + len(findings) + 4
-    while outlook and used + FEWEST_PARAMETERS + sum(map(len, outlook)) > most_lines:
+    used = len(above) + 4
+
+    def excess() -> int:
+        below = len(_findings(diagnosis, kinds)) + sum(map(len, outlook))
+        return used + FEWEST_PARAMETERS + below - most_lines
+
+    while kinds > 1 and excess() > 0:
+        kinds -= 1
+    while outlook and excess() > 0:
         outlook.pop()
-    room = min(USUAL_LINES, most_lines) - used - sum(map(len, outlook))
+    findings = _findings(diagnosis, kinds)
+    room = min(USUAL_LINES, most_lines) - used - len(findings) - sum(map(len, outlook))
     lines = [*above, "", *_parameters(diagnosis, max(room, FEWEST_PARAMETERS)), *findings]
     return "\n".join([*lines, *([""] if outlook else []), *(x for part in outlook for x in part)])
 
@@ -93,37 +110,49 @@ def _precision(value: ParameterValue) -> float:
     return abs(value.value / value.stderr) if value.stderr else 0.0
 
 
-def _findings(diagnosis: Diagnosis) -> list[str]:
-    """Describe the largest data-quality finding of each kind in one line."""
+def _findings(diagnosis: Diagnosis, most: int) -> list[str]:
+    """Describe the most important finding of each kind in at most two lines.
+
+    Findings that were not corrected come first, then those of a larger size.
+    """
     kinds: dict[str, list[Finding]] = {}
-    for finding in diagnosis.findings:
+    for finding in sorted(diagnosis.findings, key=_rank):
         kinds.setdefault(finding.kind, []).append(finding)
-    lines = []
-    for kind, findings in list(kinds.items())[:MOST_FINDINGS]:
-        largest = max(findings, key=lambda finding: abs(finding.size))
+    lines: list[str] = []
+    for kind, findings in list(kinds.items())[:most]:
+        first = min(findings, key=lambda finding: (_rank(finding), -abs(finding.size)))
         # A finding common to several runs names them all, separated by commas.
-        runs = dict.fromkeys(r for f in (largest, *findings) for r in f.run.split(", "))
+        runs = dict.fromkeys(r for f in (first, *findings) for r in f.run.split(", "))
         other_runs = f" and {count_of(len(runs) - 1, 'other run')}" if len(runs) > 1 else ""
-        lead = f"  {kind.replace('_', ' ')}: "
-        place = f" ({next(iter(runs))}{other_runs}; {largest.done})"
-        lines.append(_cut(lead + _cut(largest.words, WIDEST - len(lead + place)) + place))
-    if len(kinds) > MOST_FINDINGS:
-        lines.append(f"  and {count_of(len(kinds) - MOST_FINDINGS, 'other kind')} of findings")
+        done = "not corrected" if first.done == UNCORRECTED else first.done
+        lead, place = f"{kind.replace('_', ' ')}: ", f" ({next(iter(runs))}{other_runs}; {done})"
+        lines += _with_end(lead, first.words, place, 2)
+    if len(kinds) > most:
+        lines.append(f"  and {count_of(len(kinds) - most, 'other kind')} of findings")
     return ["", "Data quality", *lines] if lines else []
+
+
+def _rank(finding: Finding) -> int:
+    """Rank of a finding: a force of wrong sign, others that were not corrected, corrected ones."""
+    if finding.done != UNCORRECTED:
+        return 2
+    return 0 if finding.kind == "sign" else 1
 
 
 def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
     """Recommend the next action, and name conclusions that the runs do not support."""
-    paragraphs = []
     next_experiment = diagnosis.next_experiment or ""
+    paragraphs = [
+        _paragraph("Next: ", action, MOST_OUTLOOK) for action in _actions_on_records(diagnosis)
+    ]
     if next_experiment:
         lead = "Next experiment: " if diagnosis.experiment else "Note: "
-        paragraphs.append(_paragraph(lead, next_experiment, 4))
-    elif diagnosis.residual_structure:
+        paragraphs.append(_paragraph(lead, next_experiment, MOST_OUTLOOK))
+    elif diagnosis.residual_structure and not paragraphs:
         # An incomplete search first: it may find the cause of the structure.
         worst = max(diagnosis.residual_structure, key=lambda r: (r.unfinished, r.share))
         advice = advice_on(worst.axis, diagnosis.after.campaign)
-        paragraphs.append(_paragraph("Next: ", advice.to_do, 2))
+        paragraphs.append(_paragraph("Next: ", advice.to_do, MOST_OUTLOOK))
     if diagnosis.unfinished:
         paragraphs.append(_paragraph("Not tested: ", omitted_words(diagnosis), 2))
     if diagnosis.limitations:
@@ -136,6 +165,23 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
     return paragraphs
 
 
+def _actions_on_records(diagnosis: Diagnosis) -> list[str]:
+    """Action that precedes any new experiment: correct the sign of the force, or change the law.
+
+    At most one action is recommended.
+    """
+    for finding in diagnosis.findings:
+        if _rank(finding) == 0:
+            return [finding.words]
+    rival, law = diagnosis.simpler_law, find_law(diagnosis.model.law)
+    selected = bool(diagnosis.laws)
+    if rival is None or selected or not diagnosis.residual_structure:
+        return []
+    if law.has_memory and rival.held_out_rms < diagnosis.steps[-1].held_out_rms:
+        return ["the law itself may be wrong: jbf diagnose FOLDER --law auto"]
+    return []
+
+
 def _paragraph(lead: str, text: str, line_limit: int) -> list[str]:
     """Wrap a paragraph, and truncate it to a number of lines."""
     lines = hanging(lead, text, 0 if lead else 2)
@@ -144,6 +190,16 @@ def _paragraph(lead: str, text: str, line_limit: int) -> list[str]:
         if len(lines) <= line_limit
         else [*lines[: line_limit - 1], f"{lines[line_limit - 1]} ..."]
     )
+
+
+def _with_end(lead: str, words: str, end: str, line_limit: int) -> list[str]:
+    """Wrap an item of a list; if it is too long, truncate its words but keep its end."""
+    width = line_limit * WIDTH
+    lines = hanging(lead, words + end)
+    while len(lines) > line_limit and width > 0:
+        width -= 4
+        lines = hanging(lead, _cut(words, width) + end)
+    return lines[:line_limit]
 
 
 def _cut(text: str, width: int = WIDEST) -> str:

@@ -9,6 +9,7 @@ from by_hand import diagnosis_by_hand, fit_by_hand
 from golden import golden
 from jbf import Diagnosis, Model, ParameterValue, Rig
 from jbf.diagnosis import Step
+from jbf.diagnosis.which_law import LawTried
 from jbf.records.findings.finding import Finding
 
 
@@ -89,3 +90,47 @@ def test_summary_lists_parameters_of_the_machine_before_those_of_the_law() -> No
     diagnosis = replace(diagnosis_by_hand("adequate"), machine=("inertia",), fit=fit)
     text = diagnosis.summary()
     assert text.index("m_e") < text.index("F_c")
+
+
+def finding(kind: str, words: str, size: float = 1.0, done: str = "excluded") -> Finding:
+    """A finding in the force of one run."""
+    return Finding(kind, "friction_n", "slow", size, "N", done, words)
+
+
+def test_summary_keeps_the_end_of_a_finding_and_of_a_conclusion_that_exceed_one_line() -> None:
+    words = "the drive reports the torque in percent of its rated torque, and this column was"
+    long = finding("converted", f"{words} converted to N m: 1 % is 0.0127 N m, from 1.27 N m")
+    simpler = LawTried("dahl", 3, 0.5317, True)
+    text = "\n".join(
+        lines_of(replace(diagnosis_by_hand("unexplained"), findings=(long,), simpler_law=simpler))
+    )
+    assert all(number in text for number in ("0.0127 N m", "1.27 N m", "0.532 N", "2.75 N"))
+    assert "..." not in text
+
+
+def test_summary_lists_uncorrected_findings_first_and_recommends_to_correct_the_sign() -> None:
+    findings = (
+        finding("gaps", "the first gap", 9.0),
+        finding("jitter", "jitter of the times", 1e-3, "none"),
+        finding("sign", "the force drives the motion: negate friction_n", -3.0, "none"),
+    )
+    lines = lines_of(replace(diagnosis_by_hand("unexplained"), findings=findings))
+    at = lines.index("Data quality")
+    kinds = [line.split(":")[0].strip() for line in lines[at + 1 : at + 4]]
+    assert kinds == ["sign", "jitter", "gaps"]
+    actions = [line for line in lines if line.startswith("Next")]
+    assert actions[0].startswith("Next: ")
+    assert "negate friction_n" in actions[0]
+
+
+@pytest.mark.parametrize(("held_out_rms", "recommended"), [(2.0, True), (3.0, False)])
+def test_summary_recommends_law_selection_if_a_simpler_law_predicts_better_than_a_film(
+    held_out_rms: float, recommended: bool
+) -> None:
+    model = Model(Rig.thesis(), "journal_full")
+    values, correlations = model.parameters, np.eye(len(model.parameters))
+    fit = replace(fit_by_hand(), model=model, parameters=values, correlations=correlations)
+    simpler = LawTried("stribeck", 4, held_out_rms, True)
+    diagnosis = replace(diagnosis_by_hand("unexplained"), fit=fit, simpler_law=simpler)
+    (action,) = [line for line in lines_of(diagnosis) if line.startswith("Next")]
+    assert ("jbf diagnose FOLDER --law auto" in action) == recommended

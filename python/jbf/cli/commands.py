@@ -17,7 +17,7 @@ COMMANDS: dict[str, str] = {
     "power": "compute how large each effect must be for planned runs to reveal it",
     "check": "estimate how often the diagnosis of such campaigns is correct, by simulation",
     "plan": "suggest which motions to record next",
-    "predict": "predict the friction of a model for the motion of a run",
+    "predict": "predict the force of a model for the motion of a run",
     "export": "write a model as source code for a controller",
     "effects": "list the catalogue of effects with their equations, parameters and sources",
     "control": "simulate friction compensation in a control loop, and tune it",

@@ -135,7 +135,20 @@ def runs(items: Sequence[str], on: Rig, *, first: str) -> list[Run]:
 def motion(item: str, on: Rig) -> Run:
     """Read one run of a rig, which need not contain friction."""
     _refuse_toml(item, "MODEL")
-    return read_run(item, on, need_friction=False)
+    try:
+        return read_run(item, on, need_friction=False)
+    except InputError as error:
+        if error.column is None:
+            raise
+        first = f"import it first: jbf import {item} --map map.toml --folder NAME"
+        raise InputError(
+            file=error.file,
+            row=error.row,
+            column=error.column,
+            key=error.key,
+            problem=error.problem,
+            remedy=f"{error.remedy}; or, if this is a recording as logged, {first}",
+        ) from None
 
 
 def _keys(path: str) -> set[str]:

@@ -1,4 +1,4 @@
-"""`jbf predict MODEL RUN [--out CSV]`: friction predicted by a model for a run's motion."""
+"""`jbf predict MODEL RUN [--out CSV]`: force predicted by a model for a run's motion."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ def add(commands: Commands) -> None:
         "--out",
         metavar="CSV",
         default=outputs.STDOUT,
-        help="write the predicted friction to this file (default: standard output)",
+        help="write the predicted force to this file: friction, and the inertia, weight and offset "
+        "of the model (default: standard output)",
     )
     add_effects_from(parser)
 
@@ -43,14 +44,14 @@ def run(options: PredictOptions) -> int:
     model = inputs.model(options.model)
     motion = inputs.motion(options.motion, model.rig)
     try:
-        friction = model.predict(motion)
+        force = model.predict(motion)
     except InputError as error:
         raise error.within(file=options.motion) from None
     instants, clock = (motion.extra[POINT], POINT) if motion.steady else (motion.time_s, "time_s")
-    rows = zip(instants.tolist(), friction.tolist(), strict=True)
+    rows = zip(instants.tolist(), force.tolist(), strict=True)
     # The repr of a float is the shortest text that is read back as the same value.
     column = model.rig.quantities.friction_column
     lines = [f"{clock},{column}", *(f"{t!r},{f!r}" for t, f in rows)]
     outputs.write({options.out: "\n".join(lines) + "\n"})
-    outputs.say(f"{len(motion)} samples of predicted friction written to {options.out}", targets)
+    outputs.say(f"{len(motion)} samples of predicted force written to {options.out}", targets)
     return 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from jbf.errors import InputError
@@ -27,11 +28,41 @@ def check_rig_columns(rig: Rig, mapping: Map) -> None:
     else:
         motion = [k for k in ("velocity_m_s", "position_m", "angle_rad") if k in keys]
         required = ["friction_n", motion[0] if motion else "velocity_m_s"]
-    for key in required:
-        if key not in keys:
-            raise InputError(
-                file=file,
-                key=f"columns.{key}",
-                problem="is missing, but the rig requires it",
-                remedy="add it under [columns], or correct the rig's section",
-            )
+    missing = [key for key in required if key not in keys]
+    if missing:
+        remedy = "add it under [columns], or correct the rig's section"
+        derived = _at_journal(rig, mapping, missing)
+        raise InputError(
+            file=file,
+            key=f"columns.{missing[0]}",
+            problem="is missing, but the rig requires it",
+            remedy=f"write {' and '.join(derived)}" if derived else remedy,
+        )
+
+
+_ROTARY = {
+    "friction_n": ("torque_n_m", "motor_torque_n_m"),
+    "velocity_m_s": ("speed_rpm", "velocity_rad_s", "motor_speed_rpm", "motor_velocity_rad_s"),
+}
+"""Columns of a shaft from which a column at the surface of the journal is derived."""
+
+
+def _at_journal(rig: Rig, mapping: Map, missing: list[str]) -> list[str]:
+    """Lines of the map for missing columns at the journal, from the columns of the shaft."""
+    if rig.bearing is None:
+        return []
+    radius = f"{1e3 * rig.bearing.radius_m:.6g} [mm]"
+    count = rig.bearing.count
+    operations = {
+        "friction_n": f" / {radius}" + (f" / {count}" if count > 1 else ""),
+        "velocity_m_s": f" * {radius}",
+    }
+    lines = []
+    for key in missing:
+        source = next((name for name in _ROTARY.get(key, ()) if name in mapping.columns), None)
+        if source is not None:
+            expression = mapping.columns[source].strip()
+            if re.search(r"[-+]", re.sub(r"`[^`]*`", "", expression)):
+                expression = f"({expression})"
+            lines.append(f'{key} = "{expression}{operations[key]}"')
+    return lines

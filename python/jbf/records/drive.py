@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.records.quantities import LINEAR, ROTARY, Quantities
-from jbf.records.toml_file import positive, refuse_unknown, table
+from jbf.records.toml_file import positive, refuse_unknown, require, table
 from jbf.units.quantity import quantities
 
 Kind = Literal["rotary", "linear"]
@@ -175,9 +175,7 @@ class Drive:
         keys = [f.name for f in fields(cls)]
         section: Mapping[str, Any] = table(content, prefix)
         refuse_unknown(section, keys, f"{prefix}.")
-        for key in ("motion", "friction"):
-            if key not in section:
-                raise _wrong(f"{prefix}.{key}", "is missing", f"add it to [{prefix}]")
+        require(section, ("motion", "friction"), prefix)
         try:
             return cls(**quantities(section, ""))
         except InputError as error:

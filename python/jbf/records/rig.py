@@ -12,7 +12,15 @@ from jbf import _core
 from jbf.errors import InputError, quoted
 from jbf.records.drive import Drive
 from jbf.records.quantities import BEARING, LINEAR, Quantities
-from jbf.records.toml_file import PathLike, number, positive, read_toml, refuse_unknown, table
+from jbf.records.toml_file import (
+    PathLike,
+    number,
+    positive,
+    read_toml,
+    refuse_unknown,
+    require,
+    table,
+)
 from jbf.records.usual_sizes import warn_of_unusual_sizes
 from jbf.text_files import write_text
 from jbf.units.quantity import quantities
@@ -157,13 +165,7 @@ def _section(
     refuse_unknown(content, keys, f"{prefix}{name}.")
     content = quantities(content, f"{prefix}{name}.")
     needed = [f.name for f in fields(kind) if f.default is MISSING]
-    for key in needed:
-        if key not in content:
-            raise InputError(
-                key=f"{prefix}{name}.{key}",
-                problem="is missing",
-                remedy=f"add it to [{prefix}{name}]",
-            )
+    require(content, needed, f"{prefix}{name}")
     try:
         return kind(**content)
     except InputError as error:

@@ -79,6 +79,19 @@ def refuse_unknown(keys: Iterable[str], valid: Iterable[str], prefix: str = "") 
             )
 
 
+def require(keys: Iterable[str], required: Iterable[str], section: str) -> None:
+    """Raise an `InputError` that names all required keys of a section that are missing."""
+    present = set(keys)
+    missing = [key for key in required if key not in present]
+    if len(missing) == 1:
+        remedy = f"add it to [{section}]"
+        raise InputError(key=f"{section}.{missing[0]}", problem="is missing", remedy=remedy)
+    if missing:
+        names = f"{', '.join(missing[:-1])} and {missing[-1]}"
+        remedy = f"add them to [{section}]"
+        raise InputError(key=section, problem=f"lacks {names}", remedy=remedy)
+
+
 def read_toml(path: PathLike) -> dict[str, Any]:
     """Return the content of a TOML file as plain Python values.
 

@@ -30,6 +30,10 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "section misspelt": (rig("[lubricant]", "[lubricnat]"), "key lubricnat: is not known; did you"),
     "a unit in mm": (rig("radius_m = 0.0127", "radius_mm = 12.7"), 'did you mean "radius_m"?'),
     "no bearing": (RIG[RIG.index("[lub") :], "the rig has no [bearing]"),
+    "only a radius": (
+        "[bearing]\nradius_m = 0.01\n",
+        "key bearing: lacks length_m, clearance_m, mass_kg and count; add them to [bearing]",
+    ),
     "no mass": (rig("mass_kg = 2.2", "#"), "key bearing.mass_kg: is missing; add it to [bearing]"),
     # Types
     "text": (size("viscosity_pa_s", '"thin"'), 'key lubricant.viscosity_pa_s: "thin" is not a num'),

@@ -15,6 +15,7 @@ from jbf.errors import InputError
 from jbf.text_files import read_text, real_path, write_text
 
 if TYPE_CHECKING:
+    from jbf.importing.guessed import Guess
     from jbf.importing.result import Import
 
 
@@ -147,6 +148,11 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
     except OpenQuestions as questions:
         for line in questions.lines:
             outputs.complain(line)
+        if options.map is None:
+            _, map_path, kept = _proposed_map(options, joint)
+            state = "exists and was kept" if kept else "was written"
+            command = f"jbf import {' '.join(options.files)} --map {map_path} --folder {out}"
+            outputs.complain(f"{map_path} {state}; answer the questions there, then run: {command}")
         return 2
     if options.plot is not None:
         _draw(campaign, options.plot)
@@ -158,8 +164,6 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
 
 def _inspect(options: ImportOptions) -> int:
     """Inspect a file, print its proposed map, and write it as a map to edit."""
-    from jbf.importing.import_files import look
-    from jbf.importing.map_text import map_text
     from jbf.reporting.import_text import guess_report
 
     for option, path in (("--cut", options.cut), ("--plot", options.plot)):
@@ -169,11 +173,27 @@ def _inspect(options: ImportOptions) -> int:
                 problem="requires --map or --folder",
                 remedy="jbf import FILE alone inspects the file",
             )
+    proposal, map_path, kept = _proposed_map(options, options.joint)
+    outputs.say(guess_report(proposal, str(map_path), files=options.files, kept=kept), {})
+    return 0
+
+
+def _proposed_map(options: ImportOptions, joint: str | None) -> tuple[Guess, Path, bool]:
+    """Propose a map for the first file, and write it unless one exists.
+
+    Returns
+    -------
+    (Guess, Path, bool)
+        The proposal, the path of the map, and whether an existing map was kept.
+    """
+    from jbf.importing.import_files import look
+    from jbf.importing.map_text import map_text
+
     file = Path(options.files[0])
     if options.beside and len(options.files) > 1:
         remedy = "name one FILE, and the others with --beside"
         raise InputError(file="--beside", problem="requires a single FILE", remedy=remedy)
-    target, exists = _map_path(file, options.joint, replace=options.force)
+    target, exists = _map_path(file, joint, replace=options.force)
     shown_path = file.parent / target.name
     if not exists:
         outputs.check({shown_path.name: str(target)}, options.inputs())
@@ -181,11 +201,10 @@ def _inspect(options: ImportOptions) -> int:
         problem = f"{shown_path.name} exists and may name other files"
         remedy = f"replace it with --force, or use it with --map {shown_path}"
         raise InputError(file=shown_path, problem=problem, remedy=remedy)
-    proposal = look(file, options.joint, options.beside or ())
+    proposal = look(file, joint, options.beside or ())
     if not exists:
         write_text(target, map_text(proposal, str(shown_path)))
-    outputs.say(guess_report(proposal, str(shown_path), kept=exists), {})
-    return 0
+    return proposal, shown_path, exists
 
 
 def _map_path(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:

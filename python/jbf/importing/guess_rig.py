@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from jbf.importing.expression import OPEN
-from jbf.importing.guessed import Entry, Question
+from jbf.importing.guessed import Entry, Guess, Question
 from jbf.importing.targets import LINEAR, ROTARY
 
 Sections = dict[str, dict[str, Any]]
@@ -80,6 +80,13 @@ def assumed_machine(sections: Mapping[str, Mapping[str, Any]]) -> str | None:
         f"described as a {motion} drive ([drive]); for a journal bearing write [bearing] instead "
         "(docs/import.md#a-journal-bearing)"
     )
+
+
+def force_of_motor(guess: Guess) -> bool:
+    """Whether the recorded force is a torque of a motor, which may drive through a gear."""
+    drive = guess.rig.get("drive", {})
+    of_motor = {"rated_torque_n_m", "torque_constant_n_m_a"} & drive.keys()
+    return bool(of_motor) or any(entry.key == "motor_torque_n_m" for entry in guess.entries)
 
 
 def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import tomlkit
 
 from jbf.importing.columns import parse_header
-from jbf.importing.guess_rig import assumed_machine
+from jbf.importing.guess_rig import assumed_machine, force_of_motor
 from jbf.importing.guessed import Guess
 from jbf.text_files import real_path
 
@@ -27,6 +27,8 @@ _CUT = """\
 # by = "{way}"  # one or several of: "rests", "cycles", "set_point", "load_step", "motion",
 #               # "run", "parts"
 """
+
+_GEAR = ["# gear_ratio = 1.0  # turns of the motor per turn of the joint or screw"]
 
 CHOICES = {
     "motion": '  # "linear" or "rotary"',
@@ -81,7 +83,9 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     for section, content in guess.rig.items():
         lines = tomlkit.dumps({section: dict(content)}).rstrip("\n").split("\n")
         choices = [CHOICES.get(line.split(" = ")[0], "") for line in lines]
-        parts.append("\n".join(map("".join, zip(lines, choices, strict=True))) + "\n")
+        lines = list(map("".join, zip(lines, choices, strict=True)))
+        lines += _GEAR if section == "drive" and force_of_motor(guess) else []
+        parts.append("\n".join(lines) + "\n")
     if not guess.rig:
         parts.append(
             '# What it was recorded on, as in rig.toml:\n# [drive]\n# motion = "linear"\n'

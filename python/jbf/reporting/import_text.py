@@ -16,11 +16,15 @@ _MOST = 12
 """Maximum number of runs or pieces in a list; the ledger contains all of them."""
 
 
-def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
+def guess_report(
+    guess: Guess, map_path: str, *, files: Sequence[str] = (), kept: bool = False
+) -> str:
     """Report the format and contents of a file, and which assignments are certain or uncertain.
 
     Parameters
     ----------
+    files
+        All files to import with the map; by default the inspected file.
     kept
         True if a map from an earlier inspection exists and was not overwritten.
     """
@@ -60,7 +64,8 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
             "",
             f"No questions are open. {map_path} was written; edit it if necessary, then run",
         ]
-    lines.append(f"  jbf import {guess.path} --map {map_path} --folder FOLDER")
+    names = " ".join(files or [str(guess.path)])
+    lines.append(f"  jbf import {names} --map {map_path} --folder FOLDER")
     return "\n".join(lines)
 
 

@@ -100,9 +100,57 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     places = ("columns.time_s", "drive.rated_torque_n_m")
     assert all(f"key {place}: is open" in line for place, line in zip(places, lines, strict=True))
     lines = printed(capsys, "import log.csv --folder runs", 2).splitlines()
-    assert len(lines) == 2
-    assert all(line.startswith("jbf: log.csv, ") for line in lines)
+    assert len(lines) == 3
+    assert all(line.startswith("jbf: log.csv, ") for line in lines[:2])
     assert not Path("runs").exists()
+
+
+def test_import_of_several_files_with_open_questions_writes_a_map_and_proposes_its_use(
+    capsys: Capture,
+) -> None:
+    for name in ("log.csv", "second.csv"):
+        Path(name).write_text(OPEN)
+    Path("map.toml").unlink()
+    *_, last = printed(capsys, "import log.csv second.csv --folder runs", 2).splitlines()
+    assert last.endswith("jbf import log.csv second.csv --map map.toml --folder runs")
+    assert 'rated_torque_n_m = "?"' in Path("map.toml").read_text()
+    inspected = printed(capsys, "import log.csv second.csv")
+    assert "jbf import log.csv second.csv --map map.toml --folder FOLDER" in inspected
+
+
+@pytest.mark.parametrize(
+    ("header", "geared"),
+    [
+        ("time_s,speed_rpm,torque_pct", True),
+        ("time_s,speed_rpm,current_a", True),
+        ("time_s,position_mm,motor_torque_Nm", True),
+        ("time_s,speed_rpm,torque_Nm", False),
+        ("time_s,position_mm,force_N", False),
+    ],
+)
+def test_written_map_offers_a_gear_ratio_if_the_force_is_that_of_a_motor(
+    header: str, geared: bool, capsys: Capture
+) -> None:
+    Path("log.csv").write_text(OPEN.replace(OPEN.split("\n")[0], header))
+    Path("map.toml").unlink()
+    printed(capsys, "import log.csv")
+    assert ("# gear_ratio = 1.0" in Path("map.toml").read_text()) == geared
+
+
+def test_missing_columns_of_a_bearing_are_derived_from_those_of_the_shaft_in_the_remedy(
+    capsys: Capture,
+) -> None:
+    csv(Path("log.csv"), {"t": [0.0], "M": [1.0], "n": [60.0]})
+    bearing = "radius_m = 0.025\nlength_m = 0.03\nclearance_m = 5e-5\nmass_kg = 5\ncount = 2\n"
+    head = '[columns]\ntime_s = "t [s]"\n'
+    columns = 'torque_n_m = "M [N m]"\nspeed_rpm = "n - 1 [rpm]"\n'
+    Path("map.toml").write_text(f"{head}{columns}[bearing]\n{bearing}")
+    line = refusal(capsys, IMPORT, "columns.friction_n")
+    for derived in (
+        'friction_n = "M [N m] / 25 [mm] / 2"',
+        'velocity_m_s = "(n - 1 [rpm]) * 25 [mm]"',
+    ):
+        assert derived in line
 
 
 def test_edited_map_is_kept_by_a_second_import_and_another_file_gets_a_separate_map(
@@ -150,9 +198,11 @@ def test_fit_and_compare_have_equal_results_for_a_map_and_its_import(capsys: Cap
     Path("map.toml").write_text(RESTS)
     printed(capsys, IMPORT)
     options = "--law coulomb --effects inertia --out"
+    Path("raw.csv").write_text("Zeit,Weg\n0.0,0.0\n0.1,0.0\n")
     by_folder = printed(capsys, f"fit runs {options} a.toml")
     assert printed(capsys, f"fit map.toml log.csv {options} b.toml") == by_folder
     assert Path("a.toml").read_bytes() == Path("b.toml").read_bytes()
+    assert "jbf import raw.csv --map" in refusal(capsys, "predict a.toml raw.csv", "column")
     compared = printed(capsys, "compare a.toml runs")
     assert printed(capsys, "compare a.toml log.csv --map map.toml") == compared
     model = jbf.Model.load("a.toml")

@@ -355,7 +355,6 @@ BAD_COMMANDS = {
     "import drive.csv temp.csv --map two.toml --folder campaign": "name one main file",
     "import drive.csv --beside drive.csv": "has the name drive",
     "import drive.csv --map two.toml --beside cut.csv.gz --folder campaign": "cut.csv.gz",
-    "import drive.csv --beside force.csv --folder campaign": "align.force",
 }
 
 
@@ -364,3 +363,14 @@ def test_invalid_files_of_one_recording_are_refused(command: str, capsys: Captur
     whole = gzip.compress(Path("force.csv").read_bytes())
     Path("cut.csv.gz").write_bytes(whole[: len(whole) // 2])
     refused(shlex.split(command), BAD_COMMANDS[command], capsys)
+
+
+def test_open_alignment_of_an_import_without_a_map_is_a_question_in_the_written_map(
+    capsys: Capture,
+) -> None:
+    assert main(shlex.split("import drive.csv --beside force.csv --folder campaign")) == 2
+    error = capsys.readouterr().err
+    assert "align.force" in error
+    assert "jbf import drive.csv --map drive.map.toml --folder campaign" in error
+    assert "force.csv" in Path("drive.map.toml").read_text()
+    assert not Path("campaign").exists()

@@ -146,13 +146,13 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
                 progress=report,
             )
     except OpenQuestions as questions:
-        for line in questions.lines:
-            outputs.complain(line)
+        lines = list(questions.lines)
         if options.map is None:
-            _, map_path, kept = _proposed_map(options, joint)
-            state = "exists and was kept" if kept else "was written"
-            command = f"jbf import {' '.join(options.files)} --map {map_path} --folder {out}"
-            outputs.complain(f"{map_path} {state}; answer the questions there, then run: {command}")
+            others = [f"--beside {name}" for name in options.beside or ()]
+            command = " ".join(("jbf import", *options.files, *others))
+            lines[-1] += f". To write a map with these questions: {command}"
+        for line in lines:
+            outputs.complain(line)
         return 2
     if options.plot is not None:
         _draw(campaign, options.plot)

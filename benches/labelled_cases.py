@@ -92,7 +92,7 @@ def main() -> None:
         print(
             f"{name:8}{hidden:34}{diagnosis['verdict']:13}"
             f"{','.join(diagnosis['effects']) or '-':34}{verdict:11}"
-            f"{rms / truth['noise_rms']:10.4f}{seconds:7.1f}",
+            f"{rms / truth['noise_n']:10.4f}{seconds:7.1f}",
             flush=True,
         )
     print(tally)

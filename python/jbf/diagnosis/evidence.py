@@ -81,7 +81,7 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
         return False
     samples = common_samples(richer.samples, simpler.samples)
     explained = samples.rms(simpler.residuals) ** 2 - samples.rms(richer.residuals) ** 2
-    share = candidates.policy.least_filter_share(candidates.campaign.motion_share)
+    share = candidates.policy.least_share(candidates.campaign.motion_share)
     return bool(explained < share * samples.rms(simpler.residuals) ** 2)
 
 

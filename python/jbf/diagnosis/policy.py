@@ -103,13 +103,6 @@ class Policy:
         """
         return min(motion_share, self.motion.max_structure_share)
 
-    def least_filter_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that a smoothing effect (filter) must explain.
-
-        Such an effect smooths the errors of the motion and explains a part of their share.
-        """
-        return self.motion.min_filter_ratio * motion_share
-
     def least_effect_share(self, motion_share: float) -> float:
         """Minimum share of the mean square that an effect that does not smooth must explain."""
         return min(motion_share, self.motion.max_effect_share)

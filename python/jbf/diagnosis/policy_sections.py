@@ -255,12 +255,6 @@ class Motion:
         "a larger share of the variance",
         "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
     )
-    min_filter_ratio: float = documented(
-        2.0,
-        "ratio of the share of the mean square that an effect that filters a force or a motion "
-        "must explain to the share of the motion's errors",
-        "the estimated variance of these errors is uncertain by a factor of two",
-    )
     max_effect_share: float = documented(
         0.03,
         "share of the mean square that all other effects must explain where the errors of the "

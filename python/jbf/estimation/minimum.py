@@ -189,7 +189,7 @@ class Approach:
     def solution_of(self, look: Look, near: Solution) -> Solution:
         """Convert the result of a first look to a solution, with the noise of the smaller model."""
         problem, lines = self.problem, look.lines
-        samples = problem.samples_at(look.values, lines)
+        samples = problem.samples_at(look.values, None if lines is None else lines[0])
         values = problem.wrapped(look.values)
         return problem.solution(values, samples, near.noise, False, "not followed", lines)
 
@@ -240,7 +240,7 @@ class Approach:
             # The minimum for all samples is near that for the thinned samples.
             end = replace(best, converged=best.converged and thinned is problem)
         values, lines = end.values, visited.lines_at(end.values) if thinned is problem else None
-        samples = problem.samples_at(values, lines)
+        samples = problem.samples_at(values, None if lines is None else lines[0])
         noise = noise_at(problem, samples, values, lines)
         values = problem.wrapped(values)
         return problem.solution(values, samples, noise, end.converged, end.message, lines)

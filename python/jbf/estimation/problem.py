@@ -220,10 +220,10 @@ class Problem:
         samples = self.campaign.samples if samples is None else samples
         return samples.square(self.residuals(values))
 
-    def samples_at(self, values: Array, lines: Lines | None = None) -> Samples:
+    def samples_at(self, values: Array, residuals: Sequence[Array] | None = None) -> Samples:
         """Samples with the weights that the model implies at these parameter values.
 
-        `lines` holds the residuals at these values, if they are known.
+        `residuals` are those at these values, N, if they are known.
         """
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
@@ -231,12 +231,9 @@ class Problem:
         if not (moves_jumps(effects) or spreads_jumps(effects) or unknown_start):
             return samples
         prepared = self.campaign.prepared
-        if lines is None:
-            predicted = self.predict(values)
-        else:
-            predicted = [p.friction - r for p, r in zip(prepared, lines[0], strict=True)]
+        residuals = self.residuals(values) if residuals is None else residuals
+        predicted = [p.friction - r for p, r in zip(prepared, residuals, strict=True)]
         if unknown_start:
-            residuals = [p.friction - f for p, f in zip(prepared, predicted, strict=True)]
             transients = self.transient_samples(values, samples.rms(residuals))
             samples = samples.within([~mask for mask in transients])
         return samples_near_jumps(samples, prepared, predicted, effects)

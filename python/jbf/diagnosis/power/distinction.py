@@ -81,14 +81,9 @@ class Change:
     @classmethod
     def of(cls, runs: PresentRuns, model: Strength, times: float) -> Change:
         """Compute the change of the friction by an effect at a multiple of its typical strength."""
-        problem, values = model.problem.thinned, model.values(times)
         shares, change = runs.shares(model, times), runs.change(model, times)
-        by = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
-        _, slopes = problem.linearise(values, by=by)
-        if shares is not None:
-            slopes = [j * s[:, None] for j, s in zip(slopes, shares, strict=True)]
         further = runs.change(model, FURTHER * times)
-        columns = [np.column_stack(parts) for parts in zip(change, further, slopes, strict=True)]
+        columns = [np.column_stack(parts) for parts in zip(change, further, runs.slopes_of(model, times), strict=True)]
         return cls(columns, shares, runs.unexplained(columns))
 
     @cached_property

@@ -23,6 +23,17 @@ from jbf.models.catalogue import Parameter
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
+STRENGTH_RATIO = 2.0 ** (1.0 / 3.0)
+"""Ratio of the strengths at which changes of the friction are computed.
+
+Between them a change is taken as proportional to the strength; where it is not, its error is that
+of a change of the strength by at most 12 %. It is a numerical resolution and enters no verdict.
+"""
+HELD_SAMPLES = 100_000
+"""Number of samples, over all strengths of an effect, whose changes are kept for further use.
+
+At least one change is kept. It limits the memory only.
+"""
 DRAWS = 12
 """Number of white-noise draws from which the discount factors of a gain are computed.
 
@@ -66,6 +77,31 @@ class Strength:
             values[i] = np.clip(value, page.lower, page.upper)
         return np.asarray(values)
 
+    def attained(self, times: float) -> float:
+        """Strength at `times` the typical strength; it differs from `times` at a bound."""
+        value, usual, null = self.values(times)[self.which], self.usual[self.which], self.page.null
+        assert null is not None
+        if not np.isfinite(null):
+            return float(usual / value)
+        return float((value - null) / (usual - null))
+
+
+@dataclass
+class _AtStrength:
+    """Change of the friction by an effect of one strength.
+
+    Attributes
+    ----------
+    change, shares
+        Change, N, and relative sample weights (None if they do not change), one array per run.
+    slopes
+        Derivatives by the parameters of the effect, one (n, k) array per run; None until needed.
+    """
+
+    change: list[Array]
+    shares: list[Array] | None
+    slopes: list[Array] | None = None
+
 
 class PresentRuns:
     """Recorded runs and their fitted model, to which effects of given strength are added.
@@ -93,12 +129,18 @@ class PresentRuns:
         normalised = self.slopes[:, size > 0.0] / size[size > 0.0]
         self.tangent: Array = np.asarray(np.linalg.qr(normalised)[0])
         self.friction = self.samples.rms(self.now)
-        # Cache of the last result of each effect: strength, change, and sample weights.
-        self._last: dict[str, tuple[float, list[Array], list[Array] | None]] = {}
+        # The last computed changes, by effect and exponent of `STRENGTH_RATIO`.
+        self._computed: dict[str, dict[int, _AtStrength]] = {}
+        self._most_held = max(HELD_SAMPLES // max(sum(len(f) for f in self.now), 1), 1)
 
     def change(self, model: Strength, times: float) -> list[Array]:
-        """Change of the friction by an effect, N, one array per run; zero at excluded samples."""
-        return self._at(model, times)[0]
+        """Change of the friction by an effect, N, one array per run; zero at excluded samples.
+
+        It is scaled from the nearest strength at which it is computed.
+        """
+        exponent, at_nearest = self._nearest(model, times)
+        factor = model.attained(times) / model.attained(STRENGTH_RATIO**exponent)
+        return [factor * change for change in at_nearest.change]
 
     def shares(self, model: Strength, times: float) -> list[Array] | None:
         """Sample weights with an effect relative to those without it, 0 to 1, one array per run.
@@ -106,28 +148,48 @@ class PresentRuns:
         None if the effect does not change the weights. Effects that shift friction jumps change
         them.
         """
-        return self._at(model, times)[1]
+        return self._nearest(model, times)[1].shares
 
-    def _at(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
-        """Change and relative sample weights as returned by `_changed`, with a cache."""
-        last = self._last.get(model.name)
-        if last is None or last[0] != times:
-            last = self._last[model.name] = (times, *self._changed(model, times))
-        return last[1:]
+    def slopes_of(self, model: Strength, times: float) -> list[Array]:
+        """Derivatives of the friction with respect to the parameters of an effect, N per unit.
 
-    def _changed(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
+        The result has one (n, k) array per run. Samples are scaled by their weights (`shares`).
+        """
+        exponent, at_nearest = self._nearest(model, times)
+        if at_nearest.slopes is None:
+            problem = model.problem.thinned
+            by = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
+            _, slopes = problem.linearise(model.values(STRENGTH_RATIO**exponent), by=by)
+            if at_nearest.shares is not None:
+                slopes = [j * s[:, None] for j, s in zip(slopes, at_nearest.shares, strict=True)]
+            at_nearest.slopes = slopes
+        return at_nearest.slopes
+
+    def _nearest(self, model: Strength, times: float) -> tuple[int, _AtStrength]:
+        """Result at the computed strength nearest to `times`, and its exponent."""
+        exponent = round(float(np.log(times) / np.log(STRENGTH_RATIO)))
+        computed = self._computed.setdefault(model.name, {})
+        if exponent not in computed:
+            if len(computed) >= self._most_held:
+                del computed[next(iter(computed))]
+            computed[exponent] = self._changed(model, STRENGTH_RATIO**exponent)
+        return exponent, computed[exponent]
+
+    def _changed(self, model: Strength, times: float) -> _AtStrength:
         """Change of the friction by an effect at a strength, and the relative sample weights."""
         problem = model.problem.thinned
         values = model.values(times)
-        gaps = [a - b for a, b in zip(problem.predict(values), self.now, strict=True)]
-        samples = common_samples(problem.samples_at(values), self.samples)
+        residuals, prepared = problem.residuals(values), problem.campaign.prepared
+        gaps = [p.friction - r - f for p, r, f in zip(prepared, residuals, self.now, strict=True)]
+        samples = common_samples(problem.samples_at(values, residuals), self.samples)
         if samples is self.samples:
-            return gaps, None
+            return _AtStrength(gaps, None)
         shares = [
             np.divide(a, b, out=np.zeros_like(a), where=b > 0.0)
             for a, b in zip(samples.weight, self.samples.weight, strict=True)
         ]
-        return [gap * share for gap, share in zip(gaps, shares, strict=True)], shares
+        changes = [gap * share for gap, share in zip(gaps, shares, strict=True)]
+        return _AtStrength(changes, shares)
 
     def unexplained(self, changes: Sequence[Array]) -> Array:
         """Part of friction changes that the model cannot reproduce, in units of the noise.

@@ -5,6 +5,8 @@ All values are in twice the log likelihood.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import SMOOTHS_FORCE, Campaign
 from jbf.estimation.likelihood import (
@@ -110,20 +112,27 @@ def evidence_on_common_samples(
     return min(gain, evidence(candidates, richer, refit, anywhere=anywhere))
 
 
-def swap_cost(
-    candidates: Candidates, effects: tuple[str, ...], current: Solution, near: Solution
-) -> float:
-    """Loss of evidence if the current model is replaced by the model with these effects.
+def swap_costs(
+    candidates: Candidates,
+    rest: tuple[str, ...],
+    others: Sequence[str],
+    current: Solution,
+    near: Solution,
+) -> dict[str, float]:
+    """Loss of evidence if one effect of the current model is replaced by another, for each other.
 
     Parameters
     ----------
-    current
-        Solution of the present model.
-    near
-        Solution of the present model without the replaced effect.
+    rest
+        Effects of the current model without the replaced one.
+    others
+        Names of the replacements.
+    current, near
+        Solutions of the current model and of that with the effects `rest`.
     """
     # Fewer samples are independent where the residual of `current` is correlated.
     share = effective_share(current)
+    sets = {name: (*rest, name) for name in others}
 
     def cost(solution: Solution) -> float:
         """Loss of evidence if a solution replaces the current one."""
@@ -131,27 +140,35 @@ def swap_cost(
         return lost + price_of(candidates, solution.free) - price_of(candidates, current.free)
 
     policy = candidates.policy
-    score = candidates.score_test(effects, near)
+    costs = dict.fromkeys(others, cost(near))
+    candidates.score_all(list(sets.values()), near)
     shows = policy.search.min_score_share * price_of(candidates, 1)
     # Subtract the gain of the next step without the effect.
-    least = policy.search.min_swap_share * likelihood_gain(current, near)
-    if score <= shows or score - next_step_gain(near) <= least:
-        return cost(near)
-    if not many_peaks(effects):
-        # With many peaks, a step from one peak does not predict the height of another.
-        looked = candidates.look(effects, near)
-        could_gain = policy.search.linear_gain_factor * looked.promised - likelihood_gain(
-            looked.current_solution(), near
-        )
-        if cost(looked.current_solution()) - share * could_gain >= policy.search.rank_margin:
-            return cost(looked.current_solution())
-    first = cost(candidates.rank(effects, near))
-    if first >= policy.search.rank_margin:
-        return first
-    solution = candidates.converge(effects, near)
-    if solution.rms > policy.selection.max_rms_ratio * current.rms:
-        # For a wrong model, the residual with the highest likelihood may have a larger RMS.
-        return float("inf")
-    # An effect without evidence replaces no other: its fit may be better only because it uses
-    # fewer samples.
-    return cost(solution if evidence_on_common_samples(candidates, solution, near) > 0.0 else near)
+    least = policy.search.min_swap_share * likelihood_gain(current, near) + next_step_gain(near)
+    scores = {name: candidates.score_test(effects, near) for name, effects in sets.items()}
+    open_names = [name for name in others if scores[name] > max(shows, least)]
+    # With many peaks, a step from one peak does not predict the height of another.
+    one_peak = [name for name in open_names if not many_peaks(sets[name])]
+    candidates.look_all([sets[name] for name in one_peak], near)
+    for name in one_peak:
+        looked = candidates.look(sets[name], near)
+        solution = looked.current_solution()
+        gain_to_come = policy.search.linear_gain_factor * looked.promised
+        could_gain = gain_to_come - likelihood_gain(solution, near)
+        if cost(solution) - share * could_gain >= policy.search.rank_margin:
+            costs[name] = cost(solution)
+            open_names.remove(name)
+    candidates.rank_all([sets[name] for name in open_names], near)
+    for name in open_names:
+        costs[name] = cost(candidates.rank(sets[name], near))
+        if costs[name] < policy.search.rank_margin:
+            solution = candidates.converge(sets[name], near)
+            if solution.rms > policy.selection.max_rms_ratio * current.rms:
+                # For a wrong model, the residual with the highest likelihood may have a larger RMS.
+                costs[name] = float("inf")
+                continue
+            # An effect without evidence replaces no other: its fit may be better only because it
+            # uses fewer samples.
+            gains = evidence_on_common_samples(candidates, solution, near) > 0.0
+            costs[name] = cost(solution if gains else near)
+    return costs

@@ -22,7 +22,7 @@ from jbf.diagnosis.evidence import (
     evidence_on_common_samples,
     full_gain,
     price_of,
-    swap_cost,
+    swap_costs,
 )
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
@@ -361,14 +361,14 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
             continue
         if name in machine_of(candidates, current) and name != OFFSET:
             continue  # inertia and weight do not imitate an effect; an offset may
-        best, gain = name, candidates.policy.selection.tie
-        for other in candidates.names:
-            if other in current or other in unconfirmed or not can_be_added(other, rest):
-                continue
-            better = -swap_cost(candidates, (*rest, other), full, simpler)
-            if better > gain:
-                best, gain = other, better
-        if best != name:
+        others = [
+            other
+            for other in candidates.names
+            if not (other in current or other in unconfirmed) and can_be_added(other, rest)
+        ]
+        costs = swap_costs(candidates, rest, others, full, simpler)
+        best = min(costs, key=costs.__getitem__, default=name)
+        if best != name and costs[best] < -candidates.policy.selection.tie:
             current = tuple(best if e == name else e for e in current)
     return current
 
@@ -385,11 +385,8 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.converge(rest)
-        costs = {
-            other: swap_cost(candidates, (*rest, other), full, simpler)
-            for other in candidates.names
-            if other not in present and can_be_added(other, rest)
-        }
+        others = [n for n in candidates.names if n not in present and can_be_added(n, rest)]
+        costs = swap_costs(candidates, rest, others, full, simpler)
         close = {
             other: cost for other, cost in costs.items() if cost < candidates.policy.selection.tie
         }

@@ -83,7 +83,10 @@ class Change:
         """Compute the change of the friction by an effect at a multiple of its typical strength."""
         shares, change = runs.shares(model, times), runs.change(model, times)
         further = runs.change(model, FURTHER * times)
-        columns = [np.column_stack(parts) for parts in zip(change, further, runs.slopes_of(model, times), strict=True)]
+        columns = [
+            np.column_stack(parts)
+            for parts in zip(change, further, runs.slopes_of(model, times), strict=True)
+        ]
         return cls(columns, shares, runs.unexplained(columns))
 
     @cached_property

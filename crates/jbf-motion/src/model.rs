@@ -11,9 +11,8 @@ pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
 pub(crate) struct Transition<const N: usize> {
     /// Length of the step, in units of the median step.
     pub h: f64,
-    /// Terms `h^i / i!`: the transition is `F[i][j] = powers[j - i]`, with zeros below the
-    /// diagonal.
-    powers: [f64; N],
+    /// Transition matrix `F[i][j] = h^(j - i) / (j - i)!`, with zeros below the diagonal.
+    pub matrix: Square<N>,
     /// Covariance of the disturbance for process noise of unit intensity.
     pub noise: Square<N>,
 }
@@ -24,52 +23,12 @@ impl<const N: usize> Transition<N> {
         for i in 1..N {
             powers[i] = powers[i - 1] * h / i as f64;
         }
+        let matrix = Square::from_fn(|i, j| if j < i { 0.0 } else { powers[j - i] });
         let noise = Square::from_fn(|i, j| {
             let (a, b) = (N - 1 - i, N - 1 - j);
             powers[a] * powers[b] * h / (a + b + 1) as f64
         });
-        Self { h, powers, noise }
-    }
-
-    /// Transition matrix `F`.
-    pub(crate) fn matrix(&self) -> Square<N> {
-        Square::from_fn(|i, j| if j < i { 0.0 } else { self.powers[j - i] })
-    }
-
-    /// Product `F M F'` for a symmetric M.
-    pub(crate) fn carried(&self, m: &Square<N>) -> Square<N> {
-        symmetric(&self.columns(&self.columns(m).transpose()))
-    }
-
-    /// Product `F' M F` for a symmetric M.
-    pub(crate) fn carried_back(&self, m: &Square<N>) -> Square<N> {
-        symmetric(&self.columns_back(&self.columns_back(m).transpose()))
-    }
-
-    /// Product `M F'`.
-    fn columns(&self, m: &Square<N>) -> Square<N> {
-        let mut moved = *m;
-        for i in 0..N {
-            for j in i + 1..N {
-                let further = m.column(j) * self.powers[j - i];
-                let mut column = moved.column_mut(i);
-                column += further;
-            }
-        }
-        moved
-    }
-
-    /// Product `M F`.
-    fn columns_back(&self, m: &Square<N>) -> Square<N> {
-        let mut moved = *m;
-        for i in 0..N {
-            for j in 0..i {
-                let further = m.column(j) * self.powers[i - j];
-                let mut column = moved.column_mut(i);
-                column += further;
-            }
-        }
-        moved
+        Self { h, matrix, noise }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Kalman filter, Rauch-Tung-Striebel smoother and disturbance smoother of a motion.
 
+use nalgebra::{SMatrix, SVector, Vector3};
+
 use crate::model::{symmetric, Square, State, Transition, Update};
 
 /// Recorded motion at n instants; a reading with an infinite error variance is missing.
@@ -29,7 +31,7 @@ pub struct Readings<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearReading {
     /// Coefficients of position, velocity and acceleration.
-    pub row: [f64; 3],
+    pub row: Vector3<f64>,
     /// Measured value.
     pub value: f64,
     /// Error variance of the value.
@@ -40,12 +42,12 @@ pub struct LinearReading {
 #[derive(Clone, Debug, Default)]
 pub struct Smoothed<const N: usize> {
     /// Position, velocity, acceleration and further derivatives at each instant.
-    pub mean: Vec<[f64; N]>,
-    /// Covariance of the state at each instant, by rows.
-    pub covariance: Vec<[[f64; N]; N]>,
-    /// Gains of the posterior as a Markov chain backward in time, n - 1 matrices by rows:
+    pub mean: Vec<SVector<f64, N>>,
+    /// Covariance of the state at each instant.
+    pub covariance: Vec<SMatrix<f64, N, N>>,
+    /// Gains of the posterior as a Markov chain backward in time, n - 1 matrices:
     /// `E[x[k] | x[k+1]] = mean[k] + gain[k] (x[k+1] - mean[k+1])`.
-    pub gain: Vec<[[f64; N]; N]>,
+    pub gain: Vec<SMatrix<f64, N, N>>,
     /// Expected square `E[w' Q(h)^-1 w]` of the disturbance w of each step, where `Q(h)` is its
     /// covariance for process noise of unit intensity.
     ///
@@ -67,26 +69,30 @@ pub struct Smoothed<const N: usize> {
 /// Readings at one instant are processed one after the other. Internally, time is measured in
 /// median steps, so that the components of the state are of similar size.
 pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothed<N> {
-    let mut forward = Forward::default();
+    let mut forward = Forward::<N>::default();
     forward.pass(readings, intensity);
     let n = forward.filtered.len();
     if n == 0 {
         return Smoothed::default();
     }
     let mut out = Smoothed {
-        mean: vec![[0.0; N]; n],
-        covariance: vec![[[0.0; N]; N]; n],
-        gain: vec![[[0.0; N]; N]; n - 1],
+        mean: vec![State::zeros(); n],
+        covariance: vec![Square::zeros(); n],
+        gain: vec![Square::zeros(); n - 1],
         disturbance: vec![f64::NAN; n - 1],
         log_likelihood: forward.log_likelihood,
     };
-    let scale = State::from_fn(|i, _| forward.time.unit.powi(-(i as i32)));
+    // Conversion from the internal unit of time.
+    let scale = State::<N>::from_fn(|i, _| forward.time.unit.powi(-(i as i32)));
+    let scales = scale * scale.transpose();
+    let ratios = scale * scale.map(f64::recip).transpose();
     let (last, mut spread) = forward.filtered[n - 1];
-    store(&mut out, n - 1, &last, &spread, &scale);
+    out.mean[n - 1] = last.component_mul(&scale);
+    out.covariance[n - 1] = spread.component_mul(&scales);
     forward.backward(readings, intensity, |k, step, adjoint, disturbance| {
         out.disturbance[k] = disturbance;
         let (own, own_spread) = forward.filtered[k];
-        let f = step.matrix();
+        let f = step.matrix;
         // At the start of an exact record almost nothing is known. Its covariance is singular to
         // working precision there and, without a gain, remains that of the filter.
         let gain = match forward.predicted[k + 1].cholesky() {
@@ -99,12 +105,9 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
             &(left * own_spread * left.transpose() + gain * (spread + noise) * gain.transpose()),
         );
         let after = own + own_spread * adjoint.state;
-        store(&mut out, k, &after, &spread, &scale);
-        for i in 0..N {
-            for j in 0..N {
-                out.gain[k][i][j] = gain[(i, j)] * scale[i] / scale[j];
-            }
-        }
+        out.mean[k] = after.component_mul(&scale);
+        out.covariance[k] = spread.component_mul(&scales);
+        out.gain[k] = gain.component_mul(&ratios);
     });
     out
 }
@@ -184,8 +187,8 @@ impl<const N: usize> Forward<N> {
                     *r += row * (innovation / update.variance - update.gain.dot(r));
                     let of_gain = *square * update.gain;
                     let own = update.variance.recip() + update.gain.dot(&of_gain);
-                    let cross = row * of_gain.transpose();
-                    *square += row * row.transpose() * own - cross - cross.transpose();
+                    let half = row * (row * (0.5 * own) - of_gain).transpose();
+                    *square += half + half.transpose();
                 }
             }
             self.time.step(readings, k, &mut step);
@@ -198,8 +201,8 @@ impl<const N: usize> Forward<N> {
             } else {
                 f64::NAN
             };
-            *r = step.matrix().transpose() * *r;
-            *square = step.carried_back(square);
+            *r = step.matrix.tr_mul(r);
+            *square = symmetric(&(step.matrix.tr_mul(square) * step.matrix));
             visit(k, &step, &adjoint, disturbance);
         }
     }
@@ -281,9 +284,9 @@ fn filter<const N: usize>(
     for k in 0..n {
         if k > 0 {
             time.step(readings, k - 1, &mut step);
-            mean = step.matrix() * mean;
-            covariance =
-                step.carried(&covariance) + step.noise * (intensity[k - 1] * time.intensity);
+            mean = step.matrix * mean;
+            covariance = step.matrix * covariance * step.matrix.transpose()
+                + step.noise * (intensity[k - 1] * time.intensity);
         }
         let before = (mean, covariance);
         let linear = readings
@@ -333,21 +336,6 @@ fn late_velocity<const N: usize>(delay: f64) -> State<N> {
         term *= -delay / i as f64;
     }
     row
-}
-
-fn store<const N: usize>(
-    out: &mut Smoothed<N>,
-    k: usize,
-    mean: &State<N>,
-    covariance: &Square<N>,
-    scale: &State<N>,
-) {
-    for i in 0..N {
-        out.mean[k][i] = mean[i] * scale[i];
-        for j in 0..N {
-            out.covariance[k][i][j] = covariance[(i, j)] * scale[i] * scale[j];
-        }
-    }
 }
 
 /// Initial state with a weakly informative distribution.

@@ -1,6 +1,8 @@
 //! Whitening of residuals that contain the errors of a recorded motion.
 
-use crate::model::{symmetric, Square, State, Update};
+use nalgebra::{SMatrix, Vector3};
+
+use crate::model::{symmetric, State, Update};
 
 /// Whitens columns of residuals that contain the errors of a motion, in place.
 ///
@@ -10,7 +12,7 @@ use crate::model::{symmetric, Square, State, Update};
 /// # Arguments
 /// * `posterior`, `gain`: covariances and gains of the motion, see [`crate::Smoothed`].
 /// * `sensitivity`: s, derivatives of the prediction with respect to position, velocity and
-///   acceleration, (n, 3).
+///   acceleration, (n,).
 /// * `variance`: of e, (n,); a sample with an infinite variance is excluded and set to zero.
 /// * `columns`: n rows of `width` values, for instance the residual and its derivatives with
 ///   respect to parameters; each column is filtered in the same way.
@@ -21,9 +23,9 @@ use crate::model::{symmetric, Square, State, Update};
 /// The posterior is a Markov chain backward in time. A Kalman filter along it, from the last sample
 /// to the first, has independent innovations.
 pub fn whiten<const N: usize>(
-    posterior: &[[[f64; N]; N]],
-    gain: &[[[f64; N]; N]],
-    sensitivity: &[[f64; 3]],
+    posterior: &[SMatrix<f64, N, N>],
+    gain: &[SMatrix<f64, N, N>],
+    sensitivity: &[Vector3<f64>],
     variance: &[f64],
     width: usize,
     columns: &mut [f64],
@@ -37,20 +39,19 @@ pub fn whiten<const N: usize>(
         return 0.0;
     }
     // States in units of their standard errors, which differ by many powers of ten.
-    let scale: Vec<State<N>> = (0..n)
-        .map(|k| {
-            State::<N>::from_fn(|i, _| posterior[k][i][i])
-                .map(|v| if v > 0.0 { v.sqrt() } else { 1.0 })
-        })
+    let standard_error = |v: f64| if v > 0.0 { v.sqrt() } else { 1.0 };
+    let scale: Vec<State<N>> = posterior[..n]
+        .iter()
+        .map(|p| p.diagonal().map(standard_error))
         .collect();
-    let scaled =
-        |k: usize| Square::from_fn(|i, j| posterior[k][i][j] / (scale[k][i] * scale[k][j]));
+    let scaled = |k: usize| posterior[k].component_div(&(scale[k] * scale[k].transpose()));
     let mut covariance = scaled(n - 1);
     let mut means = vec![State::zeros(); width];
     let mut log_determinant = 0.0;
     for k in (0..n).rev() {
         if k + 1 < n {
-            let back = Square::<N>::from_fn(|i, j| gain[k][i][j] * scale[k + 1][j] / scale[k][i]);
+            let ratios = scale[k].map(f64::recip) * scale[k + 1].transpose();
+            let back = gain[k].component_mul(&ratios);
             // Covariance of x[k] given x[k+1], plus the contribution of the uncertainty of x[k+1].
             covariance =
                 symmetric(&(scaled(k) + back * (covariance - scaled(k + 1)) * back.transpose()));

@@ -3,7 +3,7 @@
 use jbf_motion::{
     estimate, smooth, whiten, Known, LinearReading, Passes, ReadingErrors, Readings, Smoothed,
 };
-use nalgebra::{DMatrix, DVector, SMatrix};
+use nalgebra::{DMatrix, DVector, SMatrix, Vector3};
 
 const SAMPLES: usize = 9;
 const INF: f64 = f64::INFINITY;
@@ -49,7 +49,7 @@ impl Record {
     /// Adds readings of a force `2 a + 0.5 v - p + e` at all instants except one.
     fn with_forces(mut self) -> Self {
         let reading = |k: usize| LinearReading {
-            row: [-1.0, 0.5, 2.0],
+            row: Vector3::new(-1.0, 0.5, 2.0),
             value: -19.0 * self.position[k] + 0.5 * self.velocity[k] + 0.1 * k as f64,
             variance: if k == 4 { INF } else { 0.25 },
         };
@@ -140,7 +140,7 @@ fn posterior_equals_dense_least_squares_for_uneven_steps_and_missing_readings() 
                 assert!(off.abs() < 2e-3 * sd, "{k} {i}: {off} of {sd}");
                 for j in 0..N {
                     let other = covariance[(N * k + j, N * k + j)].sqrt();
-                    let off = found.covariance[k][i][j] - covariance[(N * k + i, N * k + j)];
+                    let off = found.covariance[k][(i, j)] - covariance[(N * k + i, N * k + j)];
                     assert!(off.abs() < 2e-3 * sd * other, "{k} {i} {j}");
                 }
             }
@@ -182,8 +182,8 @@ fn whitened_columns_have_the_scalar_products_of_the_dense_covariance() {
         let record = Record::new();
         let found = record.smooth::<N>();
         let (_, covariance) = dense::<N>(&record);
-        let sensitivity: Vec<[f64; 3]> = (0..SAMPLES)
-            .map(|k| [0.2, -0.5 + 0.1 * k as f64, 0.3])
+        let sensitivity: Vec<Vector3<f64>> = (0..SAMPLES)
+            .map(|k| Vector3::new(0.2, -0.5 + 0.1 * k as f64, 0.3))
             .collect();
         let mut variance = vec![1e-3; SAMPLES];
         variance[4] = INF;
@@ -235,7 +235,7 @@ fn motion_backward_in_time_has_the_same_posterior_with_negative_speeds() {
         for k in 0..SAMPLES {
             let (a, b) = (one.mean[k], other.mean[SAMPLES - 1 - k]);
             for (i, sign) in [1.0, -1.0, 1.0, -1.0].into_iter().take(N).enumerate() {
-                let sd = one.covariance[k][i][i].sqrt();
+                let sd = one.covariance[k][(i, i)].sqrt();
                 assert!((a[i] - sign * b[i]).abs() < 2e-3 * sd);
             }
         }
@@ -263,7 +263,7 @@ fn posterior_in_milliseconds_is_the_same_motion() {
         for k in 0..SAMPLES {
             for i in 0..N {
                 let value = other.mean[k][i] * per.powi(i as i32);
-                let sd = one.covariance[k][i][i].sqrt();
+                let sd = one.covariance[k][(i, i)].sqrt();
                 assert!((value - one.mean[k][i]).abs() < 1e-6 * sd, "{k} {i}");
             }
         }

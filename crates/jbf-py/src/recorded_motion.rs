@@ -5,6 +5,7 @@ use jbf_motion::{
     estimate, log_likelihood, lower_bound, smooth, Known, LinearReading, Passes, ReadingErrors,
     Readings, Record, Smoothed,
 };
+use nalgebra::{SMatrix, Vector3};
 use numpy::ndarray::{Array2, Array3, ArrayView2, ArrayView3};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -99,7 +100,7 @@ impl MotionReadings {
             return Err(PyValueError::new_err(format!("{shapes} for {n} instants")));
         }
         let reading = |k: usize| LinearReading {
-            row: [rows[[k, 0]], rows[[k, 1]], rows[[k, 2]]],
+            row: Vector3::from_fn(|i, _| rows[[k, i]]),
             value: values[k],
             variance: variances[k],
         };
@@ -315,15 +316,17 @@ pub struct SmoothedMotion {
 impl SmoothedMotion {
     fn new<const N: usize>(py: Python<'_>, found: Smoothed<N>) -> Self {
         Self {
-            mean: Array2::from(found.mean).into_pyarray(py).unbind(),
+            mean: Array2::from_shape_fn((found.mean.len(), N), |(k, i)| found.mean[k][i])
+                .into_pyarray(py)
+                .unbind(),
             covariance: matrices(py, &found.covariance),
             gain: matrices(py, &found.gain),
         }
     }
 }
 
-fn matrices<const N: usize>(py: Python<'_>, rows: &[[[f64; N]; N]]) -> Py<PyArray3<f64>> {
-    Array3::from_shape_fn((rows.len(), N, N), |(k, i, j)| rows[k][i][j])
+fn matrices<const N: usize>(py: Python<'_>, all: &[SMatrix<f64, N, N>]) -> Py<PyArray3<f64>> {
+    Array3::from_shape_fn((all.len(), N, N), |(k, i, j)| all[k][(i, j)])
         .into_pyarray(py)
         .unbind()
 }
@@ -392,13 +395,13 @@ impl Chain<'_> {
     }
 
     fn whiten<const N: usize>(&self, width: usize, columns: &mut [f64]) -> f64 {
-        let square = |m: &ArrayView3<'_, f64>| -> Vec<[[f64; N]; N]> {
-            m.outer_iter()
-                .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m[[i, j]])))
+        let square = |all: &ArrayView3<'_, f64>| -> Vec<SMatrix<f64, N, N>> {
+            all.outer_iter()
+                .map(|m| SMatrix::from_fn(|i, j| m[[i, j]]))
                 .collect()
         };
         let rows = self.sensitivity.rows().into_iter();
-        let sensitivity: Vec<[f64; 3]> = rows.map(|r| [r[0], r[1], r[2]]).collect();
+        let sensitivity: Vec<_> = rows.map(|r| Vector3::new(r[0], r[1], r[2])).collect();
         let (posterior, gain) = (square(&self.posterior), square(&self.gain));
         jbf_motion::whiten(
             &posterior,

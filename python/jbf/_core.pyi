@@ -15,6 +15,7 @@ __all__ = [
     "BatchRig",
     "Chain",
     "Motion",
+    "MotionErrorChain",
     "MotionReadings",
     "SmoothedMotion",
     "__version__",
@@ -222,13 +223,16 @@ class SmoothedMotion:
     @property
     def gain(self) -> _Array: ...
 
+@final
+class MotionErrorChain:
+    def __new__(cls, posterior: _Array, gain: _Array) -> Self: ...
+
 def whiten_motion_errors(
-    posterior: _Array,
-    gain: _Array,
-    sensitivity: _Array,
-    variance: _Array,
-    columns: _Array,
-) -> tuple[_Array, float]: ...
+    chains: Sequence[MotionErrorChain],
+    sensitivity: Sequence[_Array],
+    variance: Sequence[_Array],
+    columns: Sequence[_Array],
+) -> list[tuple[_Array, float]]: ...
 def first_order_filter(now: tuple[float, float], before: float, values: _Array) -> _Array: ...
 def read_force(
     effects: Sequence[tuple[str, Sequence[float]]], time_s: _Array, force_n: _Array

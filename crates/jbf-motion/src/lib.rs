@@ -13,8 +13,8 @@
 //! [`estimate`] estimates the variances of the readings and the intensity of each step by
 //! expectation-maximisation. [`smooth`] returns the posterior mean and covariance of the state at
 //! each sample, the log-likelihood of the readings and the squared disturbance of each step.
-//! [`whiten`] turns residuals that contain a linear function of the motion's errors into
-//! independent ones.
+//! [`ErrorChain::whiten`] turns residuals that contain a linear function of the motion's errors
+//! into independent ones.
 //!
 //! Sources: Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*
 //! (2001), section 6.2 (order 3); Rauch, Tung & Striebel (1965) (smoother); de Jong (1989), Durbin
@@ -27,4 +27,4 @@ mod whitening;
 
 pub use estimation::{estimate, lower_bound, Known, Passes, ReadingErrors, Record};
 pub use smoother::{log_likelihood, smooth, LinearReading, Readings, Smoothed};
-pub use whitening::whiten;
+pub use whitening::ErrorChain;

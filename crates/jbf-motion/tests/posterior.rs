@@ -1,7 +1,7 @@
 //! Tests of the smoother and the whitening against dense linear algebra, and of their invariances.
 
 use jbf_motion::{
-    estimate, smooth, whiten, Known, LinearReading, Passes, ReadingErrors, Readings, Smoothed,
+    estimate, smooth, ErrorChain, Known, LinearReading, Passes, ReadingErrors, Readings, Smoothed,
 };
 use nalgebra::{DMatrix, DVector, SMatrix, Vector3};
 
@@ -200,14 +200,8 @@ fn whitened_columns_have_the_scalar_products_of_the_dense_covariance() {
         let part = full.select_rows(&kept).select_columns(&kept);
         let columns = DMatrix::from_fn(SAMPLES, 2, |k, j| (1.3 * k as f64 + 2.0 * j as f64).sin());
         let mut flat: Vec<f64> = columns.transpose().iter().copied().collect();
-        let log_determinant = whiten(
-            &found.covariance,
-            &found.gain,
-            &sensitivity,
-            &variance,
-            2,
-            &mut flat,
-        );
+        let chain = ErrorChain::new(&found.covariance, &found.gain);
+        let log_determinant = chain.whiten(&sensitivity, &variance, 2, &mut flat);
         let white = DMatrix::from_row_slice(SAMPLES, 2, &flat);
         let few = columns.select_rows(&kept);
         let expected = few.transpose() * part.clone().try_inverse().expect("regular") * &few;

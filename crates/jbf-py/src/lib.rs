@@ -13,6 +13,7 @@ mod film_paths;
 mod filter;
 mod instrument;
 mod motion;
+mod motion_errors;
 mod pool;
 mod recorded_motion;
 mod share;
@@ -32,6 +33,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<batch::BatchRig>()?;
     m.add_class::<recorded_motion::MotionReadings>()?;
     m.add_class::<recorded_motion::SmoothedMotion>()?;
+    m.add_class::<motion_errors::MotionErrorChain>()?;
     m.add_function(wrap_pyfunction!(catalogue::effects, m)?)?;
     m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
@@ -39,7 +41,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
     m.add_function(wrap_pyfunction!(filter::first_order_filter, m)?)?;
     m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
-    m.add_function(wrap_pyfunction!(recorded_motion::whiten_motion_errors, m)?)?;
+    m.add_function(wrap_pyfunction!(motion_errors::whiten_motion_errors, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     m.add_function(wrap_pyfunction!(control::constants::thesis_bearing, m)?)?;
     m.add_function(wrap_pyfunction!(control::constants::control_constants, m)?)?;

@@ -1,15 +1,12 @@
-//! Python classes for the smoother of a recorded motion, and for the whitening of residuals that
-//! contain its errors.
+//! Python classes for the smoother of a recorded motion.
 
 use jbf_motion::{
     estimate, log_likelihood, lower_bound, smooth, Known, LinearReading, Passes, ReadingErrors,
     Readings, Record, Smoothed,
 };
 use nalgebra::{SMatrix, Vector3};
-use numpy::ndarray::{Array2, Array3, ArrayView2, ArrayView3};
-use numpy::{
-    IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
-};
+use numpy::ndarray::{Array2, Array3};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -329,87 +326,4 @@ fn matrices<const N: usize>(py: Python<'_>, all: &[SMatrix<f64, N, N>]) -> Py<Py
     Array3::from_shape_fn((all.len(), N, N), |(k, i, j)| all[k][(i, j)])
         .into_pyarray(py)
         .unbind()
-}
-
-/// Whitens columns of residuals that contain errors of a motion; see `jbf_motion::whiten`.
-///
-/// Returns the columns, (n, m), and the logarithm of the determinant of their covariance.
-///
-/// # Errors
-/// If the arrays have other shapes.
-#[pyfunction]
-pub fn whiten_motion_errors<'py>(
-    py: Python<'py>,
-    posterior: PyReadonlyArray3<'py, f64>,
-    gain: PyReadonlyArray3<'py, f64>,
-    sensitivity: PyReadonlyArray2<'py, f64>,
-    variance: PyReadonlyArray1<'py, f64>,
-    columns: PyReadonlyArray2<'py, f64>,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    let width = columns.as_array().ncols();
-    let mut whitened = columns.as_array().as_standard_layout().into_owned();
-    let chain = Chain {
-        posterior: posterior.as_array(),
-        gain: gain.as_array(),
-        sensitivity: sensitivity.as_array(),
-        variance: variance.as_slice()?,
-    };
-    let order = chain.posterior.dim().1;
-    if !chain.fits(order) || whitened.nrows() != chain.variance.len() {
-        return Err(PyValueError::new_err(format!(
-            "posterior {:?}, gain {:?}, sensitivity {:?}, {} variances and columns {:?}",
-            chain.posterior.dim(),
-            chain.gain.dim(),
-            chain.sensitivity.dim(),
-            chain.variance.len(),
-            whitened.dim()
-        )));
-    }
-    let log_determinant = match (whitened.as_slice_mut(), order) {
-        (Some(flat), 3) => chain.whiten::<3>(width, flat),
-        (Some(flat), 4) => chain.whiten::<4>(width, flat),
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "order must be 3 or 4 (got {order})"
-            )))
-        }
-    };
-    Ok((whitened.into_pyarray(py), log_determinant))
-}
-
-/// Posterior of a motion, and the sensitivities of n residuals to its errors.
-struct Chain<'a> {
-    posterior: ArrayView3<'a, f64>,
-    gain: ArrayView3<'a, f64>,
-    sensitivity: ArrayView2<'a, f64>,
-    variance: &'a [f64],
-}
-
-impl Chain<'_> {
-    /// Returns true if the arrays have the shapes for a motion of this order.
-    fn fits(&self, order: usize) -> bool {
-        let n = self.variance.len();
-        self.posterior.dim() == (n, order, order)
-            && self.gain.dim() == (n.saturating_sub(1), order, order)
-            && self.sensitivity.dim() == (n, 3)
-    }
-
-    fn whiten<const N: usize>(&self, width: usize, columns: &mut [f64]) -> f64 {
-        let square = |all: &ArrayView3<'_, f64>| -> Vec<SMatrix<f64, N, N>> {
-            all.outer_iter()
-                .map(|m| SMatrix::from_fn(|i, j| m[[i, j]]))
-                .collect()
-        };
-        let rows = self.sensitivity.rows().into_iter();
-        let sensitivity: Vec<_> = rows.map(|r| Vector3::new(r[0], r[1], r[2])).collect();
-        let (posterior, gain) = (square(&self.posterior), square(&self.gain));
-        jbf_motion::whiten(
-            &posterior,
-            &gain,
-            &sensitivity,
-            self.variance,
-            width,
-            columns,
-        )
-    }
 }

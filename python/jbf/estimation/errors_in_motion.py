@@ -78,13 +78,16 @@ class ErrorsInMotion:
         selection
             Indices of the runs to use; None for all runs.
         """
-        white = []
-        for i in range(len(residuals)) if selection is None else selection:
-            columns = [residuals[i], jacobian[i]]
+        runs = list(range(len(residuals)) if selection is None else selection)
+        columns = []
+        for i in runs:
+            parts = [residuals[i], jacobian[i]]
             if self.by_delay is not None:
-                columns.append(self.by_delay[i])
-            rows, _ = self._whitened(i, np.column_stack(columns), weights[i])
-            white.append(rows[weights[i] > 0.0])
+                parts.append(self.by_delay[i])
+            columns.append(np.column_stack(parts))
+        used = [weights[i] for i in runs]
+        whitened = self._whitened(runs, columns, used)
+        white = [rows[w > 0.0] for (rows, _), w in zip(whitened, used, strict=True)]
         stacked = np.concatenate(white)
         if self.by_delay is not None:
             delay = stacked[:, -1]
@@ -97,19 +100,14 @@ class ErrorsInMotion:
 
         Values at samples without weight are zero.
         """
-        innovations = []
-        for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
-            white, _ = self._whitened(run, residual[:, None], weight)
-            innovations.append(white[:, 0] * (weight > 0.0))
-        return innovations
+        whitened = self._whitened(range(len(residuals)), [r[:, None] for r in residuals], weights)
+        return [white[:, 0] * (w > 0.0) for (white, _), w in zip(whitened, weights, strict=True)]
 
     def deviance(self, residuals: Sequence[Array], weights: Sequence[Array]) -> float:
         """Minus twice the log likelihood of the residuals, up to an additive constant."""
-        total = 0.0
-        for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
-            white, log_determinant = self._whitened(run, residual[:, None], weight)
-            total += float(np.sum(white**2)) / self.noise**2 + log_determinant
-        return total
+        whitened = self._whitened(range(len(residuals)), [r[:, None] for r in residuals], weights)
+        squares = sum(float(np.sum(white**2)) for white, _ in whitened)
+        return squares / self.noise**2 + sum(determinant for _, determinant in whitened)
 
     def variance_ratio(self, run: int) -> Array:
         """Ratio of the variance due to the motion's errors to that of the noise, shape (n,)."""
@@ -126,15 +124,25 @@ class ErrorsInMotion:
         ratio = np.concatenate(ratios)
         return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0
 
-    def _whitened(self, run: int, columns: Array, weight: Array) -> tuple[Array, float]:
-        """Whitened columns of a run, and the log determinant of the covariance."""
-        errors = self.errors[run]
+    def _whitened(
+        self, runs: Sequence[int], columns: Sequence[Array], weights: Sequence[Array]
+    ) -> list[tuple[Array, float]]:
+        """Whitened columns of each run, and the log determinants of the covariances."""
         with np.errstate(divide="ignore"):
-            variance = np.where(weight > 0.0, (self.noise / weight) ** 2, np.inf)
-        if errors is None:
-            keep = weight > 0.0
-            return columns * weight[:, None], float(np.sum(np.log(variance[keep])))
-        white, log_determinant = whiten_motion_errors(
-            errors.covariance, errors.gain, self.scale * self.sensitivity[run], variance, columns
+            variances = [np.where(w > 0.0, (self.noise / w) ** 2, np.inf) for w in weights]
+        chains = [None if (errors := self.errors[i]) is None else errors.chain for i in runs]
+        known = [k for k, chain in enumerate(chains) if chain is not None]
+        whitened = whiten_motion_errors(
+            [chain for chain in chains if chain is not None],
+            [self.scale * self.sensitivity[runs[k]] for k in known],
+            [variances[k] for k in known],
+            [columns[k] for k in known],
         )
-        return self.noise * white, log_determinant
+        results = {
+            k: (self.noise * white, log_determinant)
+            for k, (white, log_determinant) in zip(known, whitened, strict=True)
+        }
+        return [
+            results[k] if k in results else (c * w[:, None], float(np.sum(np.log(v[w > 0.0]))))
+            for k, (c, w, v) in enumerate(zip(columns, weights, variances, strict=True))
+        ]

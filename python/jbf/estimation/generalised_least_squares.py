@@ -16,6 +16,7 @@ import numpy.typing as npt
 from jbf.estimation.delays import common_delay_step, delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import WHITE
+from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
     corrected_delay_s,
     delayed,
@@ -71,13 +72,16 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     errors = [e for p in problem.campaign.prepared if (e := p.motion.errors) is not None]
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
-    ends = [_iterated(problem, solution, clock_s) for clock_s in clocks]
+
+    def iterated(clock_s: float, *, delays: bool = True) -> _End:
+        """Fit with the force on one clock."""
+        return _iterated(problem, solution, clock_s, delays=delays)
+
+    at_once = fits_at_once(problem.campaign, problem.law, problem.effects)
+    ends = list(in_parallel(iterated, clocks, at_once))
     # Steps in the delay may increase the deviance.
-    ends += [
-        _iterated(problem, solution, c, delays=False)
-        for c, e in zip(clocks, ends, strict=True)
-        if e.delayed
-    ]
+    late = [c for c, end in zip(clocks, ends, strict=True) if end.delayed]
+    ends += in_parallel(lambda clock_s: iterated(clock_s, delays=False), late, at_once)
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
     best = _with_corners_of_forces(problem, best)
     motion = best.solution.samples.motion

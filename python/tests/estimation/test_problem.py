@@ -147,7 +147,7 @@ def test_samples_at_reversals_are_excluded_if_an_effect_moves_jumps(effect: str)
     aside = before.counted[0] & ~after.counted[0]
     assert 5 <= np.count_nonzero(aside) < 0.2 * before.count
     assert np.all(after.weight[0] <= before.weight[0])
-    known = problem.samples_at(values, problem.linearise(values))
+    known = problem.samples_at(values, problem.residuals(values))
     np.testing.assert_array_equal(known.counted[0], after.counted[0])
     # No sample is excluded if the effect is at its null or does not move jumps.
     pages = zip(values, problem.parameters.values(), strict=True)

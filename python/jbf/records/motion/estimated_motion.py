@@ -13,10 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from jbf._core import MotionErrorChain
 from jbf.errors import InputError
 from jbf.records.checks import frozen
 from jbf.records.findings.finding import Finding
@@ -94,6 +97,15 @@ class MotionErrors:
         assert self.smoothed is not None
         mean, covariance, gain = self.smoothed.at(instants_s)
         return mean, replace(self, covariance=covariance, gain=gain)
+
+    @cached_property
+    def chain(self) -> MotionErrorChain:
+        """The errors as an input of the compiled core."""
+        return MotionErrorChain(self.covariance, self.gain)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state for pickling, without the object of the compiled core."""
+        return {name: value for name, value in vars(self).items() if name != "chain"}
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if _filters_motion(candidates, richer, simpler):
+    if _filters_motion(candidates, richer, simpler) or explains_less(candidates, richer, simpler):
         gain = min(gain, price)
     return gain - price
 
@@ -68,7 +68,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
         return 0.0
     if _within_steps(candidates.campaign, richer, simpler):
         return 0.0
-    if _filters_motion(candidates, richer, simpler):
+    if _filters_motion(candidates, richer, simpler) or explains_less(candidates, richer, simpler):
         return 0.0
     gain = min(likelihood_gain(richer, simpler), robust_gain(richer, simpler))
     return gain - price_of(candidates, richer.free - simpler.free)
@@ -92,6 +92,18 @@ def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bo
     samples = common_samples(richer.samples, simpler.samples)
     differences = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
     return bool(samples.rms(differences) < campaign.steps_rms(simpler.rms))
+
+
+def explains_less(candidates: Candidates, richer: Solution, other: Solution) -> bool:
+    """Whether a model with at least as many parameters as another leaves a larger RMS.
+
+    Where the errors of the motion dominate the residual, their covariance is estimated with one of
+    the models, and a larger likelihood alone does not decide between two models.
+    """
+    if not candidates.campaign.motion_uncertain or richer.free < other.free:
+        return False
+    samples = common_samples(richer.samples, other.samples)
+    return bool(samples.rms(richer.residuals) > samples.rms(other.residuals))
 
 
 def evidence_on_common_samples(
@@ -163,7 +175,8 @@ def swap_costs(
         costs[name] = cost(candidates.rank(sets[name], near))
         if costs[name] < policy.search.rank_margin:
             solution = candidates.converge(sets[name], near)
-            if solution.rms > policy.selection.max_rms_ratio * current.rms:
+            larger = solution.rms > policy.selection.max_rms_ratio * current.rms
+            if larger or explains_less(candidates, solution, current):
                 # For a wrong model, the residual with the highest likelihood may have a larger RMS.
                 costs[name] = float("inf")
                 continue

@@ -307,7 +307,9 @@ class Laws:
         "1 in 40 by chance",
     )
     same_ratio: float = documented(
-        1.005, "ratio of held-out errors up to which two laws count as equivalent", "0.5 %"
+        1.005,
+        "ratio of held-out errors up to which two laws or models count as equivalent",
+        "0.5 %",
     )
     sections: int = documented(
         40,

@@ -153,7 +153,8 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         if update is not None:
             updates += 1
             candidates = candidates.of(update.campaign)
-            present = still_needed(candidates, [n for n in present if n in update.effects])
+            kept = tuple(n for n in present if n in update.effects)
+            present = reconsider(candidates, still_needed(candidates, kept))
             visited, follow = {frozenset(present)}, "promising"
             steps.pop()
             continue
@@ -194,22 +195,23 @@ def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...
 def _grown(candidates: Candidates, present: Names, trial_round: Round) -> Names:
     """Add the effect selected in a round, and remove effects that become unnecessary.
 
-    A candidate that is tied with the leader is used instead if this results in fewer effects.
+    A candidate that is tied with the leader is used instead if the resulting model has fewer
+    effects or parameters and predicts held-out runs equally well.
     """
     tied = [t.effect for t in trial_round.trials if t.outcome == "ties"]
-    best: Names | None = None
+    models: list[Names] = []
     for name in (trial_round.leader, *tied) if present else (trial_round.leader,):
         assert name is not None
         candidates.search_peaks((*present, name))
-        grown = reconsider(candidates, (*present, name), trial_round.unconfirmed)
-        if best is None or (
-            len(grown) < len(best)
-            # A tied candidate has not been confirmed by held-out runs.
-            and candidates.held_out_rms(grown) <= candidates.held_out_rms(best)
-        ):
-            best = grown
-    assert best is not None
-    return best
+        models.append(reconsider(candidates, (*present, name), trial_round.unconfirmed))
+    errors = [candidates.held_out_rms(model) for model in models]
+    # A tied candidate has not been confirmed by held-out runs.
+    equal = [
+        model
+        for model, error in zip(models, errors, strict=True)
+        if error <= candidates.policy.laws.same_ratio * errors[0]
+    ]
+    return min(equal, key=lambda model: (len(model), candidates.converge(model).free))
 
 
 def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:

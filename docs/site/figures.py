@@ -32,6 +32,7 @@ SCRIPTS = {
     "docs/workbench_pictures.py": ("images/workbench_*.png",),
     "docs/site/commands.py": ("reference/commands.md",),
     "docs/policy.py": ("reference/policy.md",),
+    "docs/targets.py": ("reference/targets.md",),
 }
 """Names of the files that each script writes, relative to docs."""
 NOT_ANEW = {

@@ -91,6 +91,35 @@ def _warm_campaign(folder: Path) -> None:
         ).write_csv(path)
 
 
+def _joint(folder: Path) -> None:
+    """Write the recording of a simulated joint with noise to a folder: a rig and its runs."""
+    import jbf
+    import numpy as np
+
+    drive = jbf.Drive("rotary", "percent", rated_torque_n_m=2.0, gear_ratio=5.0)
+    rig = jbf.Rig(drive=drive)
+    values = {"F_c": 1.2, "F_s": 1.7, "v_s": 0.12, "F_v": 0.4, "inertia.m_e": 0.05}
+    values |= {"cogging.A": 0.15, "cogging.pitch": 2.0 * np.pi / 14.0, "cogging.phase_rad": 0.6}
+    model = jbf.Model(rig, "stribeck", ["inertia", "cogging"], values)
+    rig.write(folder / "rig.toml")
+    (folder / "runs").mkdir()
+    noise = np.random.default_rng(1)
+    for number, (omega, top) in enumerate([(0.7, 1.5), (1.9, 0.6), (0.4, 0.3)]):
+        time_s = np.arange(0.0, 12.0, 0.005)
+        velocity = top * np.sin(omega * time_s) * (1.0 + 0.2 * np.sin(0.31 * time_s))
+        steps = 0.0025 * (velocity[1:] + velocity[:-1])
+        angle = np.concatenate([[0.0], np.cumsum(steps)])
+        run = jbf.Run.from_arrays(time_s, velocity, angle_rad=angle)
+        torque = model.predict(run) + 0.02 * noise.standard_normal(len(run))
+        columns = (time_s, angle, velocity, torque / drive.unit_n)
+        lines = [
+            ",".join(map(repr, row)) for row in zip(*(c.tolist() for c in columns), strict=True)
+        ]
+        head = "time_s,angle_rad,velocity_rad_s,torque_percent"
+        path = folder / "runs" / f"sine_{number}.csv"
+        path.write_text("\n".join([head, *lines, ""]))
+
+
 def _schema(folder: Path) -> None:
     """Copy the published JSON schema to a folder."""
     shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
@@ -107,6 +136,7 @@ def _effect(folder: Path, name: str) -> None:
 GIVEN: dict[str, Callable[..., None]] = {
     "campaign": _campaign,
     "warm_campaign": _warm_campaign,
+    "joint": _joint,
     "schema": _schema,
     "effect": _effect,
 }

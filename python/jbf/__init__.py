@@ -18,7 +18,7 @@ from jbf._core import __version__
 from jbf.errors import FilmWarning, InputError, JbfError, Stopped, Unfinished
 
 if _TYPE_CHECKING:
-    from jbf import control, plot
+    from jbf import control, export, plot
     from jbf.comparison.compare import compare
     from jbf.comparison.comparison import Comparison
     from jbf.comparison.model_comparison import ModelComparison
@@ -110,7 +110,7 @@ _LATER = {
     "read_recording": "jbf.importing.import_files",
 }
 
-_PACKAGES = ("control", "plot")
+_PACKAGES = ("control", "export", "plot")
 
 __all__ = [
     "Bearing",
@@ -153,6 +153,7 @@ __all__ = [
     "diagnose",
     "diagnose_many",
     "effects",
+    "export",
     "fit",
     "fit_trajectories",
     "forget_effect",

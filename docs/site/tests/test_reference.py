@@ -8,7 +8,7 @@ import commands
 import figures
 import jbf
 import pytest
-from jbf import control, plot
+from jbf import control, export, plot
 from jbf.reporting.advice import advice_on
 from pages import DOCS
 
@@ -24,8 +24,8 @@ def test_python_reference_lists_every_public_name() -> None:
     assert named == {*jbf.__all__} - {"__version__"}
 
 
-@pytest.mark.parametrize("module", [control, plot])
-def test_python_reference_names_every_public_function_of_control_and_plot(module: object) -> None:
+@pytest.mark.parametrize("module", [control, export, plot])
+def test_python_reference_names_every_public_function_of_a_package(module: object) -> None:
     names = [n for n in module.__all__ if callable(getattr(module, n))]  # type: ignore[attr-defined]
     for name in names:
         assert re.search(rf"\b{name}\b", PYTHON), name

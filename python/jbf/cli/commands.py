@@ -18,7 +18,7 @@ COMMANDS: dict[str, str] = {
     "check": "estimate how often the diagnosis of such campaigns is correct, by simulation",
     "plan": "suggest which motions to record next",
     "predict": "predict the force of a model for the motion of a run",
-    "export": "write a model as source code for a controller",
+    "export": "write a model for a controller, a drive or a simulator, and state the losses",
     "effects": "list the catalogue of effects with their equations, parameters and sources",
     "control": "simulate friction compensation in a control loop, and tune it",
 }

@@ -33,7 +33,12 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "jbf predict model.toml motion.csv --out friction.csv",
         "jbf predict model.toml motion.csv",
     ),
-    "export": ("jbf export model.toml --rust friction.rs", "jbf export model.toml --c friction.h"),
+    "export": (
+        "jbf export model.toml --rust friction.rs",
+        "jbf export model.toml --c friction.h",
+        "jbf export model.toml runs/ --to table --out friction.csv",
+        "jbf export model.toml runs/ --to table --points 12 --max-loss 0.05 --json loss.json",
+    ),
     "effects": ("jbf effects", "jbf effects presliding", "jbf effects --law lugre"),
     "control": ("jbf control tables", "jbf control run --scheme none,observed --plot loops.png"),
     "control run": (

@@ -1,20 +1,45 @@
-"""Fitted model as source code for firmware: Rust for the crate `jbf-core`, C for its C interface.
+"""Fitted model in the form that a controller, a simulator or a drive reads.
 
-Input: a `Model`. Output: text with the constants of exactly the law and the effects of the model,
-and the calls that build it. The physics stays in the core, so that steps on the target along the
-motion of `record` are bit-identical to `jbf predict`. In Rust the effects are a typed set: the
-target reserves memory only for those of the model.
+Input: a `Model`, and for most targets the runs along which the loss is computed.
+
+Source code for firmware with `jbf-core`: text with the constants of exactly the law and the effects
+of the model, and the calls that build it. The physics stays in the core, so that steps on the
+target along the motion of `record` are bit-identical to `jbf predict`. In Rust the effects are a
+typed set: the target reserves memory only for those of the model.
 
 - `numbers`: language-independent data of a model.
 - `constants`: the constants, in the syntax of a language.
 - `rust`, `c`: the languages, and the calls around the constants.
 - `record`: the motion of a run, as an exported model receives it.
 
-May import: `jbf.models`; nothing from estimation, diagnosis or reporting.
+Targets without the core (`to`, `TARGETS`), each with a ledger of what it does not carry:
+
+- `registry`: the targets by name, and the export to one of them.
+- `target`, `ledger`: settings, files and result of an export; its losses.
+- `reference`: force of a model along its runs, without weight, inertia and sensor.
+- `steady`: friction against speed, and its approximation by few points.
+- `table`: the targets, one per file.
+
+May import: `jbf.models`, `jbf.estimation`; nothing from diagnosis or reporting.
 """
 
 from jbf.export.c import c
+from jbf.export.ledger import Ledger, RunLoss, Term
 from jbf.export.record import Record, record
+from jbf.export.registry import TARGETS, to
 from jbf.export.rust import rust
+from jbf.export.target import Exported, Settings
 
-__all__ = ["Record", "c", "record", "rust"]
+__all__ = [
+    "TARGETS",
+    "Exported",
+    "Ledger",
+    "Record",
+    "RunLoss",
+    "Settings",
+    "Term",
+    "c",
+    "record",
+    "rust",
+    "to",
+]

@@ -15,6 +15,7 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.export.target import Exported
 from jbf.importing.result import Import
 from jbf.models.model import Model
 from jbf.records.run import Run
@@ -23,6 +24,7 @@ from jbf.reporting.check_text import check_report, short_check
 from jbf.reporting.comparison_text import comparison_report, model_comparison_report
 from jbf.reporting.control_run_text import runs_text
 from jbf.reporting.diagnosis_text import diagnosis_text
+from jbf.reporting.export_text import export_columns, export_report, export_table, short_export
 from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
 from jbf.reporting.power_text import plan_report, planned_report, short_plan, short_power
 from jbf.results import register
@@ -38,6 +40,7 @@ register("summary", Import, import_text.import_report)
 register("summary", PlannedPower, planned_report)
 register("summary", Check, check_report)
 register("summary", Plan, plan_report)
+register("summary", Exported, export_report)
 
 register("short_words", Fit, short.short_fit)
 register("short_words", Bootstrap, short.short_bootstrap)
@@ -49,6 +52,7 @@ register("short_words", Import, import_text.short_import)
 register("short_words", PlannedPower, short_power)
 register("short_words", Check, short_check)
 register("short_words", Plan, short_plan)
+register("short_words", Exported, short_export)
 
 register("small_table", Fit, small_tables.fit_table)
 register("small_table", Bootstrap, small_tables.bootstrap_table)
@@ -63,6 +67,7 @@ register("small_table", Run, small_tables.run_table)
 register("small_table", PlannedPower, small_tables.planned_table)
 register("small_table", Plan, small_tables.plan_table)
 register("small_table", Check, small_tables.check_table)
+register("small_table", Exported, export_table)
 
 register("columns", Fit, frames.fit_columns)
 register("columns", Bootstrap, lambda found: dict(found.values))
@@ -75,3 +80,4 @@ register("columns", Import, import_text.import_columns)
 register("columns", PlannedPower, frames.power_columns)
 register("columns", Plan, frames.plan_columns)
 register("columns", Check, frames.check_columns)
+register("columns", Exported, export_columns)

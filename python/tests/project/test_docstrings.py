@@ -11,7 +11,9 @@ import jbf
 import pytest
 
 NAMES = [
-    name for name in jbf.__all__ if not name.startswith("_") and name not in ("control", "plot")
+    name
+    for name in jbf.__all__
+    if not name.startswith("_") and name not in ("control", "export", "plot")
 ]
 FUNCTIONS = [name for name in NAMES if inspect.isfunction(getattr(jbf, name))]
 ROOT = Path(__file__).resolve().parents[3]

@@ -1,0 +1,134 @@
+"""Export targets: what a target returns, and the result of an export."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.export.ledger import Ledger, Term
+from jbf.export.reference import Reference
+from jbf.results import Result
+from jbf.text_files import write_texts
+
+Array = npt.NDArray[np.float64]
+MAIN = ""
+"""Key of the main file among the files of an export."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Options of the targets.
+
+    Attributes
+    ----------
+    points
+        Largest number of points of a table, both directions together.
+    """
+
+    points: int = 20
+
+
+@dataclass(frozen=True)
+class Written:
+    """Files of a target, and the force of the exported form.
+
+    Attributes
+    ----------
+    files
+        Text of each file, by the suffix that replaces that of the main file; `MAIN` is the main
+        file.
+    terms
+        How each term of the model is carried.
+    force
+        Force of the exported form along each run of the reference, shape (n,).
+    evaluated_by
+        The program that computed this force.
+    notes
+        Further properties of the export.
+    """
+
+    files: Mapping[str, str]
+    terms: tuple[Term, ...]
+    force: list[Array]
+    evaluated_by: str
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Target:
+    """One target of `jbf export --to`.
+
+    Attributes
+    ----------
+    name, summary
+        Name, and a description in one line.
+    suffix
+        Suffix of the main file, such as `.csv`.
+    write
+        Function that writes the files of a reference.
+    """
+
+    name: str
+    summary: str
+    suffix: str
+    write: Callable[[Reference, Settings], Written]
+
+
+@dataclass(frozen=True, repr=False)
+class Exported(Result):
+    """Model in the form of a target, with its loss ledger.
+
+    Attributes
+    ----------
+    target
+        Name of the target.
+    files
+        Text of each file, by the suffix that replaces that of the main file; the key of the main
+        file is empty.
+    ledger
+        How each term of the model is carried, and the error along the runs.
+    """
+
+    target: str
+    files: Mapping[str, str] = field(repr=False)
+    ledger: Ledger
+
+    @property
+    def text(self) -> str:
+        """Text of the main file."""
+        return self.files[MAIN]
+
+    def texts(self, path: str | os.PathLike[str]) -> dict[str, str]:
+        """Text of each file by its path, if the main file has this path."""
+        main = Path(path)
+        return {
+            str(main if suffix == MAIN else main.with_name(main.stem + suffix)): text
+            for suffix, text in self.files.items()
+        }
+
+    def save(self, path: str | os.PathLike[str]) -> list[str]:
+        """Write all files next to each other, all or none, and return their paths.
+
+        Parameters
+        ----------
+        path
+            Path of the main file.
+
+        Raises
+        ------
+        InputError
+            A file cannot be written.
+        """
+        texts: dict[str | os.PathLike[str], str] = dict(self.texts(path).items())
+        write_texts(texts)
+        return [os.fspath(written) for written in texts]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the target and the ledger as JSON-serialisable data."""
+        return {"target": self.target, "ledger": self.ledger.to_dict()}

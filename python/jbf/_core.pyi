@@ -27,6 +27,7 @@ __all__ = [
     "film_integrals",
     "first_order_filter",
     "laws",
+    "maxwell_slip_elements",
     "read_force",
     "steady_friction",
     "thesis_bearing",
@@ -171,6 +172,7 @@ def steady_friction(
     bearing: BearingSizes | None,
     load_n: float | None,
 ) -> _Array: ...
+def maxwell_slip_elements(parameters: Sequence[float]) -> list[tuple[float, float]]: ...
 
 @type_check_only
 class _ReadingErrors(Protocol):

@@ -2,6 +2,8 @@
 
 use crate::bearing::{refused, Sizes};
 use jbf_core::film::FilmIntegrals;
+use jbf_core::law::maxwell_slip::MaxwellSlip;
+use jbf_core::law::Named;
 use jbf_core::{law, transition, Clock};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -58,4 +60,11 @@ pub fn steady_friction<'py>(
     )
     .map_err(refused)?;
     Ok(out.into_pyarray(py))
+}
+
+/// Stiffness (N/m) and friction level (N) of each element of the law `maxwell_slip`.
+#[pyfunction]
+pub fn maxwell_slip_elements(parameters: Vec<f64>) -> PyResult<Vec<(f64, f64)>> {
+    let law = MaxwellSlip::build(None, None, &parameters, Clock::Journal).map_err(refused)?;
+    Ok(law.elements().map(|[k, level]| (k, level)).to_vec())
 }

@@ -39,6 +39,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
+    m.add_function(wrap_pyfunction!(curves::maxwell_slip_elements, m)?)?;
     m.add_function(wrap_pyfunction!(filter::first_order_filter, m)?)?;
     m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
     m.add_function(wrap_pyfunction!(motion_errors::whiten_motion_errors, m)?)?;

@@ -75,6 +75,19 @@ def add(commands: Commands) -> None:
         default=default.points,
         help=f"table: largest number of points, both directions together; default {default.points}",
     )
+    parser.add_argument(
+        "--joint",
+        metavar="NAME",
+        default=default.joint,
+        help=f"mjcf: name of the joint; default {default.joint}",
+    )
+    parser.add_argument(
+        "--mujoco",
+        metavar="VERSION",
+        default=default.mujoco,
+        help="mjcf: version of MuJoCo whose elements may be used, such as 3.3; "
+        f"default {default.mujoco}",
+    )
 
 
 def run(options: ExportOptions) -> int:

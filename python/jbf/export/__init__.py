@@ -18,7 +18,8 @@ Targets without the core (`to`, `TARGETS`), each with a ledger of what it does n
 - `target`, `ledger`: settings, files and result of an export; its losses.
 - `reference`: force of a model along its runs, without weight, inertia and sensor.
 - `steady`: friction against speed, and its approximation by few points.
-- `table`: the targets, one per file.
+- `joint_elements`, `joint_form`: elements of a simulated joint, and a model in terms of them.
+- `table`, `mjcf`: the targets, one per file.
 
 May import: `jbf.models`, `jbf.estimation`; nothing from diagnosis or reporting.
 """

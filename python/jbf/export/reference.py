@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -125,6 +125,32 @@ class Reference:
     def predict(self, model: Model) -> list[Array]:
         """Force of another model along the same motions, each shape (n,)."""
         return predict(model, self.motions)
+
+    def without(self, force: Iterable[Array]) -> Reference:
+        """Reference whose force lacks a part, given along each run, shape (n,)."""
+        rest = [a - b for a, b in zip(self.force, force, strict=True)]
+        return replace(self, force=rest)
+
+    def rms_error(self, forces: Iterable[Array]) -> float:
+        """RMS error of an exported form over all sliding samples."""
+        errors = self.pooled(a - b for a, b in zip(forces, self.force, strict=True))
+        return float(np.sqrt(np.mean(errors**2)))
+
+    @property
+    def friction_rms(self) -> float:
+        """RMS force over all sliding samples."""
+        return float(np.sqrt(np.mean(self.pooled(self.force) ** 2)))
+
+    @property
+    def travel(self) -> float:
+        """Largest range of the positions of a run; from the speed where none was recorded."""
+        ranges = []
+        for run, velocity, position in zip(self.runs, self.velocity, self.position, strict=True):
+            path = position
+            if not np.any(position):
+                path = np.concatenate([[0.0], np.cumsum(velocity[1:] * np.diff(run.time_s))])
+            ranges.append(float(np.ptp(path)))
+        return max(ranges)
 
     def losses(self, forces: Iterable[Array]) -> tuple[RunLoss, ...]:
         """Errors of an exported form, given its force along each run, shape (n,)."""

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from jbf.errors import InputError
 from jbf.export.ledger import Ledger
+from jbf.export.mjcf import MJCF
 from jbf.export.reference import Reference
 from jbf.export.table import TABLE
 from jbf.export.target import Exported, Settings, Target
@@ -13,7 +14,7 @@ from jbf.models.model import Model, the_model
 from jbf.records.arguments import one_of
 from jbf.records.run import Run
 
-TARGETS: dict[str, Target] = {target.name: target for target in (TABLE,)}
+TARGETS: dict[str, Target] = {target.name: target for target in (TABLE, MJCF)}
 """Targets by name."""
 DEFAULT = Settings()
 

@@ -29,9 +29,15 @@ class Settings:
     ----------
     points
         Largest number of points of a table, both directions together.
+    joint
+        Name of the joint in a simulator.
+    mujoco
+        Version of MuJoCo whose elements may be used.
     """
 
     points: int = 20
+    joint: str = "joint"
+    mujoco: str = "4.0.0"
 
 
 @dataclass(frozen=True)

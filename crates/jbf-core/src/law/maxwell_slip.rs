@@ -92,6 +92,11 @@ fn carried<T: Real>(u: f64, exponent: T) -> T {
 }
 
 impl<T: Real> MaxwellSlip<T> {
+    /// Returns the stiffness (N/m) and the friction level (N) of each element.
+    pub fn elements(&self) -> [[T; 2]; ELEMENTS] {
+        core::array::from_fn(|j| [self.stiffness_n_m[j], self.share[j] * self.coulomb_n])
+    }
+
     /// Advances the forces of all elements along one leg, a part of a step in one direction.
     #[inline(always)]
     fn slide(&self, forces_n: &mut [T; ELEMENTS], leg: &Leg<T>) {

@@ -293,3 +293,16 @@ fn friction_follows_masings_rules_for_a_stack_of_reversals() {
     // Difference between the elements and a virgin curve, from reversal to reversal.
     assert!(worst < 0.01 * F_C, "{worst}");
 }
+
+#[test]
+fn elements_add_up_to_the_level_and_the_stiffness_at_a_reversal() {
+    let law = MaxwellSlip::<f64>::build(None, None, &values(0.5), Clock::Journal).unwrap();
+    let (mut stiffness, mut level) = (0.0, 0.0);
+    for [k, most] in law.elements() {
+        assert!(k > 0.0 && most > 0.0);
+        stiffness += k;
+        level += most;
+    }
+    assert!((stiffness / SIGMA - 1.0).abs() < 1e-12);
+    assert!((level / F_C - 1.0).abs() < 1e-12);
+}

@@ -79,7 +79,7 @@ def add(commands: Commands) -> None:
         "--joint",
         metavar="NAME",
         default=default.joint,
-        help=f"mjcf: name of the joint; default {default.joint}",
+        help=f"simulators: name of the joint; default {default.joint}",
     )
     parser.add_argument(
         "--mujoco",

@@ -13,7 +13,7 @@ from jbf.export.joint_elements import Elements, JointForm
 from jbf.export.joint_form import joint_form
 from jbf.export.ledger import Term
 from jbf.export.reference import Reference
-from jbf.export.target import MAIN, Settings, Target, Written
+from jbf.export.target import MAIN, Settings, Target, Written, xml_text
 from jbf.models.model import Model
 
 DCMOTOR = (3, 7, 0)
@@ -79,7 +79,7 @@ def write_mjcf(reference: Reference, settings: Settings) -> Written:
     ET.SubElement(body, "inertial", pos="0 0 0", mass=moved, diaginertia=" ".join([moved] * 3))
     for section in sections[1:]:
         test.append(section)
-    files = {MAIN: _xml(include), "_test.xml": _xml(test)}
+    files = {MAIN: xml_text(include), "_test.xml": xml_text(test)}
     force = form.force(reference)
     return Written(
         files,
@@ -246,11 +246,6 @@ def _notes(form: JointForm, version: tuple[int, ...], rotary: bool) -> tuple[str
             "discrete; save mjData.plastic with the state"
         )
     return tuple(notes)
-
-
-def _xml(element: ET.Element) -> str:
-    ET.indent(element)
-    return ET.tostring(element, encoding="unicode") + "\n"
 
 
 MJCF = Target(

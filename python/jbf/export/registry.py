@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from jbf.errors import InputError
+from jbf.export.description import ISAAC, SDF, URDF
 from jbf.export.ledger import Ledger
 from jbf.export.mjcf import MJCF
 from jbf.export.reference import Reference
@@ -14,7 +15,7 @@ from jbf.models.model import Model, the_model
 from jbf.records.arguments import one_of
 from jbf.records.run import Run
 
-TARGETS: dict[str, Target] = {target.name: target for target in (TABLE, MJCF)}
+TARGETS: dict[str, Target] = {target.name: target for target in (TABLE, MJCF, URDF, SDF, ISAAC)}
 """Targets by name."""
 DEFAULT = Settings()
 

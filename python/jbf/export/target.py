@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -138,3 +139,9 @@ class Exported(Result):
     def to_dict(self) -> dict[str, Any]:
         """Return the target and the ledger as JSON-serialisable data."""
         return {"target": self.target, "ledger": self.ledger.to_dict()}
+
+
+def xml_text(element: ET.Element) -> str:
+    """Indented text of an XML element."""
+    ET.indent(element)
+    return ET.tostring(element, encoding="unicode") + "\n"

@@ -1,0 +1,82 @@
+"""Joint dynamics of robot descriptions and of Isaac Lab."""
+
+import ast
+import json
+import xml.etree.ElementTree as ET
+
+import jbf
+import numpy as np
+import pytest
+from jbf import export
+from joint_runs import AXIS, JOINT, joint_runs
+
+COULOMB = {"F_c": 5.0, "F_s": 5.0, "F_v": 2.0}
+
+
+def read(target: str, exported: export.Exported) -> dict[str, float]:
+    """Values of the main file of an export, by the name of the field."""
+    if target == "isaac":
+        values: dict[str, float] = {}
+        for node in ast.walk(ast.parse(exported.text)):
+            if isinstance(node, ast.keyword) and isinstance(node.value, ast.Constant):
+                values[str(node.arg)] = node.value.value
+        return values
+    (dynamics,) = ET.fromstring(exported.text).iter("dynamics")
+    if target == "urdf":
+        return {name: float(value) for name, value in dynamics.attrib.items()}
+    return {element.tag: float(element.text or "nan") for element in dynamics}
+
+
+@pytest.mark.parametrize("rig", [JOINT, AXIS])
+@pytest.mark.parametrize("target", ["urdf", "sdf", "isaac"])
+def test_coulomb_friction_is_exact(target: str, rig: jbf.Rig) -> None:
+    model = jbf.Model(rig, "coulomb", parameters=COULOMB)
+    exported = export.to(model, target, joint_runs(rig))
+    dry, viscous = {"isaac": ("dynamic_friction", "viscous_friction")}.get(
+        target, ("friction", "damping")
+    )
+    values = read(target, exported)
+    assert (values[dry], values[viscous]) == (5.0, 2.0)
+    assert exported.ledger.term("coulomb").status == "exact"
+    assert exported.ledger.share < 1e-9
+
+
+@pytest.mark.parametrize("target", ["urdf", "sdf", "isaac"])
+def test_stribeck_friction_has_the_fitted_values_with_the_least_error(target: str) -> None:
+    parameters = COULOMB | {"F_s": 8.0, "v_s": 0.1}
+    model, runs = jbf.Model(JOINT, "stribeck", parameters=parameters), joint_runs()
+    exported = export.to(model, target, runs)
+    assert exported.ledger.term("stribeck").status == "approximate"
+    velocity = np.concatenate([run.velocity for run in runs])
+    moving = np.abs(velocity) > 1e-3
+    force = np.concatenate([model.predict(run) for run in runs])[moving]
+    columns = np.stack([np.sign(velocity), velocity], axis=1)[moving]
+    _, squares, _, _ = np.linalg.lstsq(columns, force, rcond=None)
+    least = np.sqrt(squares[0] / np.sum(force**2))
+    assert exported.ledger.share == pytest.approx(least, rel=0.05)
+
+
+def test_isaac_static_level_is_that_of_the_law_and_units_are_stated() -> None:
+    parameters = COULOMB | {"F_s": 8.0, "v_s": 0.1, "inertia.m_e": 0.3}
+    model = jbf.Model(JOINT, "stribeck", ["inertia"], parameters)
+    exported = export.to(model, "isaac", joint_runs(), settings=export.Settings(joint="knee"))
+    values = read("isaac", exported)
+    assert values["friction"] == 8.0
+    assert values["friction"] > values["dynamic_friction"]
+    assert values["armature"] == 0.3
+    described = json.loads(exported.files["_values.json"])
+    assert {name: entry["value"] for name, entry in described.items()} == {
+        name: values[name] for name in described
+    }
+    assert described["viscous_friction"]["unit"] == "N m s/rad"
+
+
+@pytest.mark.parametrize("rig", [JOINT, AXIS])
+def test_mujoco_reads_the_dynamics_of_the_urdf(rig: jbf.Rig) -> None:
+    mujoco = pytest.importorskip("mujoco", reason="needs MuJoCo: pip install mujoco")
+    model = jbf.Model(rig, "coulomb", parameters=COULOMB)
+    exported = export.to(model, "urdf", joint_runs(rig))
+    loaded = mujoco.MjModel.from_xml_string(exported.text)
+    assert loaded.dof_frictionloss[0] == 5.0
+    damping = np.ravel(loaded.dof_damping)[0]
+    assert damping == 2.0

@@ -79,7 +79,14 @@ def add(commands: Commands) -> None:
         "--joint",
         metavar="NAME",
         default=default.joint,
-        help=f"simulators: name of the joint; default {default.joint}",
+        help="c, simulators: name of the joint, which is the prefix of names in C; "
+        f"default {default.joint}",
+    )
+    parser.add_argument(
+        "--precision",
+        choices=("double", "float"),
+        default=default.precision,
+        help=f"c: floating-point type of the code; default {default.precision}",
     )
     parser.add_argument(
         "--mujoco",

@@ -8,6 +8,7 @@ from jbf.errors import InputError
 from jbf.export.description import ISAAC, SDF, URDF
 from jbf.export.ledger import Ledger
 from jbf.export.mjcf import MJCF
+from jbf.export.plain_c import PLAIN_C
 from jbf.export.reference import Reference
 from jbf.export.table import TABLE
 from jbf.export.target import Exported, Settings, Target
@@ -15,7 +16,9 @@ from jbf.models.model import Model, the_model
 from jbf.records.arguments import one_of
 from jbf.records.run import Run
 
-TARGETS: dict[str, Target] = {target.name: target for target in (TABLE, MJCF, URDF, SDF, ISAAC)}
+TARGETS: dict[str, Target] = {
+    target.name: target for target in (TABLE, PLAIN_C, MJCF, URDF, SDF, ISAAC)
+}
 """Targets by name."""
 DEFAULT = Settings()
 

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +18,13 @@ from jbf.results import Result
 from jbf.text_files import write_texts
 
 Array = npt.NDArray[np.float64]
+STEM = "@STEM@"
+"""Text in a file that stands for the name of the main file without its suffix."""
 MAIN = ""
 """Key of the main file among the files of an export."""
+
+
+Precision = Literal["double", "float"]
 
 
 @dataclass(frozen=True)
@@ -34,11 +39,14 @@ class Settings:
         Name of the joint in a simulator.
     mujoco
         Version of MuJoCo whose elements may be used.
+    precision
+        Floating-point type of C code.
     """
 
     points: int = 20
     joint: str = "joint"
     mujoco: str = "4.0.0"
+    precision: Precision = "double"
 
 
 @dataclass(frozen=True)
@@ -109,13 +117,15 @@ class Exported(Result):
     @property
     def text(self) -> str:
         """Text of the main file."""
-        return self.files[MAIN]
+        return self.files[MAIN].replace(STEM, "model")
 
     def texts(self, path: str | os.PathLike[str]) -> dict[str, str]:
         """Text of each file by its path, if the main file has this path."""
         main = Path(path)
         return {
-            str(main if suffix == MAIN else main.with_name(main.stem + suffix)): text
+            str(main if suffix == MAIN else main.with_name(main.stem + suffix)): text.replace(
+                STEM, main.stem
+            )
             for suffix, text in self.files.items()
         }
 

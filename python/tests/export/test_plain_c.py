@@ -1,0 +1,205 @@
+"""C code without the core: compiled, run along reference motions and compared with the core."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+from jbf import export
+from jbf.export.c_parts import CONTACT, LAWS, OTHER, TRANSMISSION
+from jbf.models.catalogue import built_in, built_in_laws, reason_not_applicable
+from joint_runs import JOINT, joint_runs
+
+BASE = {"F_c": 5.0, "F_s": 8.0, "v_s": 0.1, "F_v": 2.0, "sigma_0": 2e3, "sigma_1": 3.0, "v_d": 0.3}
+EFFECTS = ("presliding", *CONTACT, *OTHER, *TRANSMISSION)
+ULPS = 2
+ALL_BITS = ("coulomb", "maxwell_slip", "elasto_plastic")
+"""Laws whose force is that of the core to the last bit: they use no function of math.h."""
+
+MAIN = """
+#include <stdio.h>
+#include "model.h"
+int main(void) {
+  joint_friction_motion m;
+  joint_friction_state state;
+  double x[7];
+  int first = 1;
+  while (scanf("%lf %lf %lf %lf %lf %lf %lf", x, x + 1, x + 2, x + 3, x + 4, x + 5, x + 6) == 7) {
+    m.time_s = x[0];
+    m.velocity = (joint_friction_real)x[1];
+    m.acceleration = (joint_friction_real)x[2];
+    m.position = (joint_friction_real)x[3];
+    m.weight_offset = (joint_friction_real)x[4];
+    m.load = (joint_friction_real)x[5];
+    m.temperature = (joint_friction_real)x[6];
+    printf("%.17g\\n", (double)(first ? joint_friction_start(&state, &m)
+                                      : joint_friction_step(&state, &m)));
+    first = 0;
+  }
+  return 0;
+}
+"""
+
+
+def compiler(name: str = "cc") -> str:
+    path = shutil.which(name) or (shutil.which("gcc") if name == "cc" else None)
+    if path is None:
+        pytest.skip(f"needs a compiler, {name}")
+    return path
+
+
+def model_of(law: str, *effects: str) -> jbf.Model:
+    names = [e for name in effects for e in (name, built_in()[name].further_of) if e]
+    values = {p.name: BASE.get(p.name, p.starts[0]) for p in built_in_laws()[law].parameters}
+    for name in names:
+        values |= {f"{name}.{p.name}": p.starts[0] for p in built_in()[name].parameters}
+    return jbf.Model(JOINT, law, names, values)
+
+
+def runs_with_all_columns(step_s: float) -> list[jbf.Run]:
+    """Runs with a stop and a rest, a load and a temperature."""
+    runs = []
+    for run in joint_runs(step_s=step_s):
+        t = run.time_s
+        velocity = run.velocity * ((t < 4.0) | (t > 4.5))
+        path = np.concatenate([[0.0], np.cumsum(0.5 * step_s * (velocity[1:] + velocity[:-1]))])
+        columns = {"load_n": 20.0 + 5.0 * np.sin(t), "temperature_c": 30.0 + t}
+        runs.append(jbf.Run.from_arrays(t, velocity, angle_rad=path, name=run.name, **columns))
+    return runs
+
+
+def run_program(exported: export.Exported, folder: Path, record: export.Record) -> np.ndarray:
+    """Compile an export with a program of its own and run it along a motion."""
+    exported.save(folder / "model.c")
+    (folder / "main.c").write_text(MAIN)
+    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off", "-O1"]
+    build = [compiler(), *strict, "model.c", "main.c", "-lm", "-o", "program"]
+    done = subprocess.run(build, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    zero = np.zeros(len(record.time_s))
+    rows = np.stack(
+        [
+            record.time_s,
+            record.velocity_m_s,
+            record.acceleration_m_s2,
+            record.angle_rad,
+            zero if record.weight_offset_rad is None else record.weight_offset_rad,
+            record.load_n,
+            zero if record.temperature_c is None else record.temperature_c,
+        ],
+        axis=1,
+    )
+    text = "\n".join(" ".join(map(repr, row)) for row in rows.tolist())
+    out = subprocess.run([folder / "program"], input=text, capture_output=True, text=True)
+    assert out.returncode == 0
+    return np.array(out.stdout.split(), float)[record.samples]
+
+
+@pytest.mark.parametrize(("law", "step_s"), [*((law, 0.005) for law in LAWS), ("lugre", 0.001)])
+def test_compiled_law_gives_the_numbers_of_the_core(
+    law: str, step_s: float, tmp_path: Path
+) -> None:
+    model = model_of(law)
+    run = runs_with_all_columns(step_s)[0]
+    exported = export.to(model, "c", [run])
+    force = run_program(exported, tmp_path, export.record(model, run))
+    expected = model.predict(run)
+    if law in ALL_BITS:
+        assert force.tolist() == expected.tolist()
+    spacing = np.spacing(np.max(np.abs(expected)))
+    assert np.max(np.abs(force - expected)) <= ULPS * spacing
+    assert exported.ledger.term(law).status == "exact"
+    assert exported.ledger.share < 1e-15
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_compiled_effect_gives_the_numbers_of_the_core(effect: str) -> None:
+    compiler()
+    laws = ("coulomb", "lugre", "dahl")
+    law = next(law for law in laws if reason_not_applicable(built_in()[effect], law) is None)
+    others = ("gravity", "inertia") if effect == "torque_proportional" else ()
+    model = model_of(law, effect, *others)
+    ledger = export.to(model, "c", runs_with_all_columns(0.01)).ledger
+    assert ledger.term(effect).status == "exact"
+    assert "compiled" in ledger.evaluated_by
+    scale = max(np.max(np.abs(model.predict(run))) for run in runs_with_all_columns(0.01))
+    assert max(loss.largest for loss in ledger.runs) <= 2 * ULPS * np.spacing(scale)
+
+
+def test_compiled_model_with_many_effects_gives_the_numbers_of_the_core(tmp_path: Path) -> None:
+    names = ("stribeck_excess", "viscous_thinning", "dry_asymmetry", "pitch_ripple")
+    model = model_of("maxwell_slip", *names, "coulomb_drag", "gravity", "inertia", "cogging")
+    run = runs_with_all_columns(0.002)[1]
+    exported = export.to(model, "c", [run])
+    force = run_program(exported, tmp_path, export.record(model, run))
+    expected = model.predict(run)
+    assert np.max(np.abs(force - expected)) <= 2 * ULPS * np.spacing(np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("law", ["stribeck", "lugre", "maxwell_slip"])
+def test_single_precision_agrees_to_its_rounding_errors(law: str, tmp_path: Path) -> None:
+    model, run = model_of(law), runs_with_all_columns(0.005)[0]
+    settings = export.Settings(precision="float")
+    exported = export.to(model, "c", [run], settings=settings)
+    force = run_program(exported, tmp_path, export.record(model, run))
+    assert force == pytest.approx(model.predict(run), abs=2e-3 * np.max(np.abs(force)))
+    assert exported.ledger.share < 1e-3
+
+
+def test_header_and_code_compile_as_cpp(tmp_path: Path) -> None:
+    exported = export.to(model_of("lugre"), "c", joint_runs())
+    exported.save(tmp_path / "elbow.c")
+    (tmp_path / "main.cpp").write_text(
+        '#include "elbow.h"\n'
+        "int main() { joint_friction_motion m = {}; joint_friction_state s;\n"
+        "  return joint_friction_start(&s, &m) != 0; }\n"
+    )
+    strict = ["-Wall", "-Wextra", "-Werror"]
+    for command in (
+        [compiler(), "-std=c99", *strict, "-c", "elbow.c"],
+        [compiler("c++"), *strict, "main.cpp", "elbow.o", "-lm", "-o", "main"],
+        [str(tmp_path / "main")],
+    ):
+        assert subprocess.run(command, cwd=tmp_path).returncode == 0
+
+
+def test_sample_that_is_not_later_or_not_finite_changes_nothing(tmp_path: Path) -> None:
+    model, run = model_of("lugre"), runs_with_all_columns(0.01)[0]
+    exported = export.to(model, "c", [run])
+    record = export.record(model, run)
+    plain = run_program(exported, tmp_path, record)
+    twice = {name: np.repeat(getattr(record, name), 2) for name in (
+        "time_s", "acceleration_m_s2", "angle_rad", "load_n", "temperature_c",
+    )}  # fmt: skip
+    speed = np.repeat(record.velocity_m_s, 2)
+    speed[1::2] = np.where(np.arange(len(record.time_s)) % 2, np.nan, 1e3)
+    doubled = export.Record(
+        samples=2 * record.samples + 1, velocity_m_s=speed, weight_offset_rad=None, **twice
+    )
+    assert run_program(exported, tmp_path, doubled).tolist() == plain.tolist()
+
+
+@pytest.mark.parametrize(
+    ("model", "settings"),
+    [
+        (jbf.Model(JOINT, "rate_and_state"), export.Settings()),
+        (jbf.Model(JOINT, "coulomb", ["backlash"], {"backlash.gap": 0.01}), export.Settings()),
+        (jbf.Model(jbf.Rig.thesis()), export.Settings()),
+        (jbf.Model(JOINT, "coulomb"), export.Settings(joint="left elbow")),
+    ],
+)
+def test_law_effect_or_name_without_a_form_in_c_is_refused(
+    model: jbf.Model, settings: export.Settings
+) -> None:
+    with pytest.raises(jbf.InputError):
+        export.to(model, "c", joint_runs(model.rig), settings=settings)
+
+
+def test_without_a_compiler_the_ledger_says_that_the_code_was_not_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    ledger = export.to(model_of("coulomb"), "c", joint_runs()).ledger
+    assert "no C compiler" in ledger.evaluated_by

@@ -188,8 +188,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     write_texts({path: text})
 
 
-def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
-    """Write UTF-8 files, each of them atomically.
+def write_texts(texts: Mapping[str | os.PathLike[str], str | bytes]) -> None:
+    """Write UTF-8 files, each of them atomically; bytes are written as they are.
 
     A concurrent reader sees the complete old file or the complete new one. Each text is first
     written to a temporary file in the same folder. Once all are complete, they are renamed. If one
@@ -203,7 +203,8 @@ def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
     staged: list[tuple[Path, Path]] = []
     try:
         for path, text in texts.items():
-            _stage(path_of(path), text.encode("utf-8", errors="replace"), staged)
+            data = text if isinstance(text, bytes) else text.encode("utf-8", errors="replace")
+            _stage(path_of(path), data, staged)
         for temporary, target in staged:
             try:
                 os.replace(temporary, target)

@@ -39,6 +39,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "jbf export model.toml runs/ --to table --out friction.csv",
         "jbf export model.toml runs/ --to table --points 12 --max-loss 0.05 --json loss.json",
         "jbf export model.toml runs/ --to c --joint elbow --out elbow.c",
+        "jbf export model.toml runs/ --to fmu2 --joint elbow --out elbow.fmu",
         "jbf export model.toml runs/ --to mjcf --joint elbow --out elbow.xml",
     ),
     "effects": ("jbf effects", "jbf effects presliding", "jbf effects --law lugre"),

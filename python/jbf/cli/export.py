@@ -79,14 +79,14 @@ def add(commands: Commands) -> None:
         "--joint",
         metavar="NAME",
         default=default.joint,
-        help="c, simulators: name of the joint, which is the prefix of names in C; "
+        help="c, FMU, simulators: name of the joint, which is the prefix of names in C; "
         f"default {default.joint}",
     )
     parser.add_argument(
         "--precision",
         choices=("double", "float"),
         default=default.precision,
-        help=f"c: floating-point type of the code; default {default.precision}",
+        help=f"c, FMU: floating-point type of the code; default {default.precision}",
     )
     parser.add_argument(
         "--mujoco",
@@ -148,7 +148,7 @@ def _to_target(options: ExportOptions, target: str) -> int:
         settings=options.settings,
         max_loss=options.max_loss,
     )
-    texts: dict[str, str] = {}
+    texts: dict[str, str | bytes] = {}
     if options.out == outputs.STDOUT:
         texts[outputs.STDOUT] = exported.text
     elif options.out is not None:

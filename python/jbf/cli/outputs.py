@@ -179,15 +179,16 @@ def keep_unfinished(
     return end
 
 
-def write(texts: Mapping[str, str]) -> None:
-    """Write each text to its path, all or none; `-` is standard output."""
+def write(texts: Mapping[str, str | bytes]) -> None:
+    """Write each text or archive to its path, all or none; `-` is standard output, for texts."""
     write_texts({path: text for path, text in texts.items() if path != STDOUT})
-    if STDOUT in texts:
+    printed = texts.get(STDOUT)
+    if isinstance(printed, str):
         if sys.stdout is None:
             raise InputError(
                 file="standard output", problem="is closed", remedy="name a file in place of -"
             )
-        _print(texts[STDOUT], data=True)
+        _print(printed, data=True)
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:

@@ -20,7 +20,7 @@ Targets without the core (`to`, `TARGETS`), each with a ledger of what it does n
 - `steady`: friction against speed, and its approximation by few points.
 - `joint_elements`, `joint_form`: elements of a simulated joint, and a model in terms of them.
 - `c_parts`, `compiled`: C fragments of laws and effects; compiled code run along a reference.
-- `table`, `plain_c`, `mjcf`, `description`: the targets.
+- `table`, `plain_c`, `fmu`, `mjcf`, `description`: the targets.
 
 May import: `jbf.models`, `jbf.estimation`; nothing from diagnosis or reporting.
 """

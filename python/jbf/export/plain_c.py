@@ -6,7 +6,11 @@ The core is not needed on the target. The fragments of `c_parts` have its operat
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from importlib.resources import files as package_files
+
+import numpy as np
+import numpy.typing as npt
 
 from jbf import _core
 from jbf.errors import InputError
@@ -17,20 +21,46 @@ from jbf.export.reference import BODY, Reference, force_of_effects, instrument
 from jbf.export.target import MAIN, Settings, Target, Written
 from jbf.models.model import Model
 
+Array = npt.NDArray[np.float64]
 FUNCTIONS = ("EXP", "EXPM1", "POW", "LOG", "SIN", "COS", "FABS", "ROUND", "CEIL")
 """Functions of math.h that the fragments use, by the name in braces."""
 
 
-def write_c(reference: Reference, settings: Settings) -> Written:
-    """Write a model as C99."""
+@dataclass(frozen=True)
+class PlainC:
+    """C code of a model, and its force along the runs of a reference.
+
+    Attributes
+    ----------
+    prefix
+        Prefix of all names.
+    source, header
+        Texts of the files; `STEM` is the name of the header without its suffix.
+    terms, force, evaluated_by, notes
+        As in `Written`.
+    """
+
+    prefix: str
+    source: str
+    header: str
+    terms: tuple[Term, ...]
+    force: list[Array]
+    evaluated_by: str
+    notes: tuple[str, ...]
+
+    @property
+    def source_of_force(self) -> str:
+        """Part of the source that computes the force at a motion."""
+        return self.source[: self.source.index("/* Motion between two instants")]
+
+
+def plain_c(reference: Reference, settings: Settings) -> PlainC:
+    """Write a model as C99 and run it."""
     model = reference.machine
     _check(model, settings)
     prefix = f"{settings.joint}_friction"
-    source, header = c_source(model, prefix, settings.precision), _header(model, prefix, settings)
-    notes = [
-        f"{settings.precision}; math.h replaces the functions of the core, which costs rounding "
-        "errors in laws with exp or pow",
-    ]
+    source = c_source(model, prefix, settings.precision)
+    header = _header(model, prefix, settings)
     force, evaluated_by = reference.force, "jbf; no C compiler was found to run the code"
     try:
         whole = run_c(source, header, prefix, settings.precision, reference)
@@ -46,8 +76,18 @@ def write_c(reference: Reference, settings: Settings) -> Written:
             terms.append(Term(name, "external", "property of the recording"))
         else:
             terms.append(Term(name, "exact", f"{prefix}_step"))
-    files = {MAIN: source, ".h": header}
-    return Written(files, tuple(terms), force, evaluated_by, tuple(notes))
+    note = (
+        f"{settings.precision}; math.h replaces the functions of the core, which costs rounding "
+        "errors in laws with exp or pow"
+    )
+    return PlainC(prefix, source, header, tuple(terms), force, evaluated_by, (note,))
+
+
+def write_c(reference: Reference, settings: Settings) -> Written:
+    """Write a model as C99."""
+    made = plain_c(reference, settings)
+    files = {MAIN: made.source, ".h": made.header}
+    return Written(files, made.terms, made.force, made.evaluated_by, made.notes)
 
 
 def _check(model: Model, settings: Settings) -> None:
@@ -70,7 +110,7 @@ def _check(model: Model, settings: Settings) -> None:
             )
 
 
-def _filled(text: str, prefix: str, precision: str) -> str:
+def filled(text: str, prefix: str, precision: str) -> str:
     """Replace the names in braces by the prefix and by the functions of math.h."""
     suffix = "f" if precision == "float" else ""
     names = {name: name.lower() + suffix for name in FUNCTIONS} | {"p": prefix, "real": precision}
@@ -112,7 +152,7 @@ def c_source(model: Model, prefix: str, precision: str) -> str:
         body = body.replace(f"@{name.upper()}@", text if used else "")
     body = re.sub(r"\n\s*\n\s*\n+", "\n\n", body)
     constants = "\n".join(_constants(model, body))
-    text = _filled(body.replace("@CONSTANTS@", constants), prefix, precision)
+    text = filled(body.replace("@CONSTANTS@", constants), prefix, precision)
     return re.sub(r"(?m)^[ \t]+$\n", "", text)
 
 
@@ -177,7 +217,7 @@ def _header(model: Model, prefix: str, settings: Settings) -> str:
         "SPEED": quantities.speed,
     }.items():
         template = template.replace(f"@{name}@", text)
-    return _filled(template, prefix, settings.precision)
+    return filled(template, prefix, settings.precision)
 
 
 PLAIN_C = Target(

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from jbf.errors import InputError
 from jbf.export.description import ISAAC, SDF, URDF
+from jbf.export.fmu import FMU2, FMU3
 from jbf.export.ledger import Ledger
 from jbf.export.mjcf import MJCF
 from jbf.export.plain_c import PLAIN_C
@@ -17,7 +18,7 @@ from jbf.records.arguments import one_of
 from jbf.records.run import Run
 
 TARGETS: dict[str, Target] = {
-    target.name: target for target in (TABLE, PLAIN_C, MJCF, URDF, SDF, ISAAC)
+    target.name: target for target in (TABLE, PLAIN_C, FMU2, FMU3, MJCF, URDF, SDF, ISAAC)
 }
 """Targets by name."""
 DEFAULT = Settings()

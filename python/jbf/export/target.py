@@ -12,6 +12,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.export.ledger import Ledger, Term
 from jbf.export.reference import Reference
 from jbf.results import Result
@@ -56,8 +57,8 @@ class Written:
     Attributes
     ----------
     files
-        Text of each file, by the suffix that replaces that of the main file; `MAIN` is the main
-        file.
+        Text, or bytes of an archive, of each file, by the suffix that replaces that of the main
+        file; `MAIN` is the main file.
     terms
         How each term of the model is carried.
     force
@@ -68,7 +69,7 @@ class Written:
         Further properties of the export.
     """
 
-    files: Mapping[str, str]
+    files: Mapping[str, str | bytes]
     terms: tuple[Term, ...]
     force: list[Array]
     evaluated_by: str
@@ -104,30 +105,43 @@ class Exported(Result):
     target
         Name of the target.
     files
-        Text of each file, by the suffix that replaces that of the main file; the key of the main
-        file is empty.
+        Text, or bytes of an archive, of each file, by the suffix that replaces that of the main
+        file; the key of the main file is empty.
     ledger
         How each term of the model is carried, and the error along the runs.
     """
 
     target: str
-    files: Mapping[str, str] = field(repr=False)
+    files: Mapping[str, str | bytes] = field(repr=False)
     ledger: Ledger
 
     @property
     def text(self) -> str:
-        """Text of the main file."""
-        return self.files[MAIN].replace(STEM, "model")
+        """Text of the main file.
 
-    def texts(self, path: str | os.PathLike[str]) -> dict[str, str]:
-        """Text of each file by its path, if the main file has this path."""
-        main = Path(path)
-        return {
-            str(main if suffix == MAIN else main.with_name(main.stem + suffix)): text.replace(
-                STEM, main.stem
+        Raises
+        ------
+        InputError
+            The main file is an archive.
+        """
+        main = self.files[MAIN]
+        if isinstance(main, bytes):
+            raise InputError(
+                problem=f"the export to {self.target} is an archive, not text",
+                remedy="name a file with --out (save in Python)",
             )
-            for suffix, text in self.files.items()
-        }
+        return main.replace(STEM, "model")
+
+    def texts(self, path: str | os.PathLike[str]) -> dict[str, str | bytes]:
+        """Content of each file by its path, if the main file has this path."""
+        main = Path(path)
+        contents: dict[str, str | bytes] = {}
+        for suffix, content in self.files.items():
+            target = main if suffix == MAIN else main.with_name(main.stem + suffix)
+            if isinstance(content, str):
+                content = content.replace(STEM, main.stem)
+            contents[str(target)] = content
+        return contents
 
     def save(self, path: str | os.PathLike[str]) -> list[str]:
         """Write all files next to each other, all or none, and return their paths.
@@ -142,7 +156,7 @@ class Exported(Result):
         InputError
             A file cannot be written.
         """
-        texts: dict[str | os.PathLike[str], str] = dict(self.texts(path).items())
+        texts: dict[str | os.PathLike[str], str | bytes] = dict(self.texts(path).items())
         write_texts(texts)
         return [os.fspath(written) for written in texts]
 

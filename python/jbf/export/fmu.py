@@ -1,0 +1,232 @@
+"""Targets `fmu2` and `fmu3`: source-code FMUs for Co-Simulation around the target `c`."""
+
+from __future__ import annotations
+
+import io
+import uuid
+import xml.etree.ElementTree as ET
+import zipfile
+from importlib.resources import files as package_files
+
+from jbf import _core
+from jbf.export.plain_c import filled, plain_c
+from jbf.export.reference import Reference
+from jbf.export.target import MAIN, STEM, Settings, Target, Written, xml_text
+from jbf.records.quantities import Quantities
+
+INPUTS = ("velocity", "acceleration", "position", "weight_offset", "load", "temperature")
+"""Inputs of an FMU, as far as the model uses them."""
+XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
+DEFAULT_C = 20.0
+"""Temperature before the first input, C."""
+_BASE_UNITS: dict[str, dict[str, str]] = {
+    "N": {"kg": "1", "m": "1", "s": "-2"},
+    "N.m": {"kg": "1", "m": "2", "s": "-2"},
+    "m": {"m": "1"},
+    "m/s": {"m": "1", "s": "-1"},
+    "m/s2": {"m": "1", "s": "-2"},
+    "rad": {"rad": "1"},
+    "rad/s": {"rad": "1", "s": "-1"},
+    "rad/s2": {"rad": "1", "s": "-2"},
+    "degC": {"K": "1", "offset": "273.15"},
+}
+"""Units of FMI by their exponents of SI base units."""
+
+
+def write_fmu2(reference: Reference, settings: Settings) -> Written:
+    """Write a model as a source-code FMU for FMI 2.0."""
+    return _write(reference, settings, 2)
+
+
+def write_fmu3(reference: Reference, settings: Settings) -> Written:
+    """Write a model as a source-code FMU for FMI 3.0."""
+    return _write(reference, settings, 3)
+
+
+def _write(reference: Reference, settings: Settings, version: int) -> Written:
+    made = plain_c(reference, settings)
+    inputs = [n for n in INPUTS if n == "velocity" or f"motion->{n}" in made.source_of_force]
+    identifier = str(uuid.uuid5(uuid.NAMESPACE_OID, made.source + made.header))
+    variables = {"force": _unit(reference, "force")} | {n: _unit(reference, n) for n in inputs}
+    template = (
+        package_files("jbf.export").joinpath(f"fmi{version}.c.txt").read_text(encoding="utf-8")
+    )
+    assignments = [
+        f"  motion.{name} = ({{p}}_real)now->value[{i}];" for i, name in enumerate(inputs, start=1)
+    ]
+    defaults = [
+        f"  {'c->now.' if version == 2 else 'now->'}value[{i}] = {DEFAULT_C};"
+        for i, name in enumerate(inputs, start=1)
+        if name == "temperature"
+    ]
+    for name, text in {
+        "COUNT": str(len(variables)),
+        "GUID": identifier,
+        "INPUTS": "\n".join(assignments),
+        "DEFAULTS": "\n".join(defaults),
+    }.items():
+        template = template.replace(f"@{name}@", text)
+    sources = {
+        f"fmi{version}.c": filled(template, made.prefix, settings.precision),
+        "model.c": made.source.replace(STEM, "model"),
+        "model.h": made.header,
+    }
+    title = " + ".join([reference.model.law, *reference.machine.effects])
+    describe = _description_2 if version == 2 else _description_3
+    archive = {"modelDescription.xml": describe(made.prefix, title, identifier, variables)}
+    if version == 3:
+        archive["sources/buildDescription.xml"] = _build_description(made.prefix)
+    archive |= {f"sources/{name}": text for name, text in sources.items()}
+    notes = (
+        *made.notes,
+        "the FMU contains sources only; most tools compile them on import",
+        "the inputs are those at the end of a step: a master that sets them at its beginning "
+        "gets the force one step later",
+    )
+    return Written(
+        {MAIN: _zipped(archive)}, made.terms, made.force, made.evaluated_by, tuple(notes)
+    )
+
+
+def _unit(reference: Reference, name: str) -> str:
+    """FMI unit of a variable; empty without one."""
+    quantities: Quantities = reference.model.rig.quantities
+    return {
+        "force": quantities.force.replace(" ", "."),
+        "velocity": quantities.speed,
+        "acceleration": f"{quantities.length}/s2",
+        "position": quantities.length,
+        "weight_offset": "rad",
+        "temperature": "degC",
+    }.get(name, "")
+
+
+def _description_2(prefix: str, title: str, guid: str, variables: dict[str, str]) -> str:
+    """Text of modelDescription.xml for FMI 2.0."""
+    root = _root(prefix, title, {"fmiVersion": "2.0", "guid": guid})
+    simulation = ET.SubElement(
+        root,
+        "CoSimulation",
+        modelIdentifier=prefix,
+        canHandleVariableCommunicationStepSize="true",
+        canGetAndSetFMUstate="true",
+        canSerializeFMUstate="true",
+    )
+    sources = ET.SubElement(simulation, "SourceFiles")
+    for name in ("fmi2.c", "model.c"):
+        ET.SubElement(sources, "File", name=name)
+    _add_units(root, variables)
+    listed = ET.SubElement(root, "ModelVariables")
+    for reference, (name, unit) in enumerate(variables.items()):
+        output = reference == 0
+        variable = ET.SubElement(
+            listed,
+            "ScalarVariable",
+            name=name,
+            valueReference=str(reference),
+            causality="output" if output else "input",
+            variability="continuous",
+            description="force that resists the motion" if output else f"{name} of the drive",
+        )
+        if output:
+            variable.set("initial", "calculated")
+        real = ET.SubElement(variable, "Real", {"unit": unit} if unit else {})
+        if not output:
+            real.set("start", str(DEFAULT_C if name == "temperature" else 0.0))
+    structure = ET.SubElement(root, "ModelStructure")
+    for group in ("Outputs", "InitialUnknowns"):
+        ET.SubElement(ET.SubElement(structure, group), "Unknown", index="1")
+    return XML + xml_text(root)
+
+
+def _root(prefix: str, title: str, attributes: dict[str, str]) -> ET.Element:
+    """Root element of modelDescription.xml."""
+    return ET.Element(
+        "fmiModelDescription",
+        attributes,
+        modelName=prefix,
+        description=f"Friction of a drive: {title}",
+        generationTool=f"jbf {_core.__version__}",
+        variableNamingConvention="flat",
+    )
+
+
+def _add_units(root: ET.Element, variables: dict[str, str]) -> None:
+    units = ET.SubElement(root, "UnitDefinitions")
+    for name in dict.fromkeys(unit for unit in variables.values() if unit):
+        defined = ET.SubElement(units, "Unit", name=name)
+        ET.SubElement(defined, "BaseUnit", _BASE_UNITS[name])
+
+
+def _description_3(prefix: str, title: str, token: str, variables: dict[str, str]) -> str:
+    """Text of modelDescription.xml for FMI 3.0."""
+    root = _root(prefix, title, {"fmiVersion": "3.0", "instantiationToken": token})
+    ET.SubElement(
+        root,
+        "CoSimulation",
+        modelIdentifier=prefix,
+        canHandleVariableCommunicationStepSize="true",
+        canGetAndSetFMUState="true",
+        canSerializeFMUState="true",
+    )
+    _add_units(root, variables)
+    listed = ET.SubElement(root, "ModelVariables")
+    for reference, (name, unit) in enumerate(variables.items()):
+        output = reference == 0
+        attributes = {"unit": unit} if unit else {}
+        if output:
+            attributes["initial"] = "calculated"
+        else:
+            attributes["start"] = str(DEFAULT_C if name == "temperature" else 0.0)
+        ET.SubElement(
+            listed,
+            "Float64",
+            attributes,
+            name=name,
+            valueReference=str(reference),
+            causality="output" if output else "input",
+            variability="continuous",
+            description="force that resists the motion" if output else f"{name} of the drive",
+        )
+    ET.SubElement(
+        listed,
+        "Float64",
+        name="time",
+        valueReference=str(len(variables)),
+        causality="independent",
+        variability="continuous",
+        unit="s",
+    )
+    units = root.find("UnitDefinitions")
+    assert units is not None
+    ET.SubElement(ET.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
+    structure = ET.SubElement(root, "ModelStructure")
+    for group in ("Output", "InitialUnknown"):
+        ET.SubElement(structure, group, valueReference="0")
+    return XML + xml_text(root)
+
+
+def _build_description(prefix: str) -> str:
+    """Text of buildDescription.xml for FMI 3.0."""
+    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=prefix)
+    sources = ET.SubElement(configuration, "SourceFileSet", language="C99")
+    for name in ("fmi3.c", "model.c"):
+        ET.SubElement(sources, "SourceFile", name=name)
+    return XML + xml_text(root)
+
+
+def _zipped(archive: dict[str, str]) -> bytes:
+    """ZIP archive of texts, the same bytes for the same texts."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as zipped:
+        for name, text in archive.items():
+            entry = zipfile.ZipInfo(name)
+            entry.external_attr = 0o644 << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            zipped.writestr(entry, text)
+    return buffer.getvalue()
+
+
+FMU2 = Target("fmu2", "source-code FMU for FMI 2.0 (Co-Simulation)", ".fmu", write_fmu2)
+FMU3 = Target("fmu3", "source-code FMU for FMI 3.0 (Co-Simulation)", ".fmu", write_fmu3)

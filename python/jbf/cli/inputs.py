@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli.progress import shown
 from jbf.errors import InputError
-from jbf.models.chain import check_rig
+from jbf.models.chain import check_rig, default_law
 from jbf.models.model import Model
 from jbf.models.vocabulary import AUTO
 from jbf.records.csv_file import read_run
@@ -36,7 +36,7 @@ def law_for(on: Rig, requested: str | None) -> str:
 
 def law_of_fit(on: Rig, requested: str | None) -> str:
     """Law to fit: the requested one, otherwise `journal` for a bearing, `coulomb` for a drive."""
-    return requested or ("journal" if on.drive is None else "coulomb")
+    return requested or default_law(on)
 
 
 def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Rig, list[Run]]:

@@ -88,6 +88,11 @@ def check_rig(rig: Rig, law: str) -> None:
             )
 
 
+def default_law(rig: Rig) -> str:
+    """Law that a fit uses if none is named: `journal` for a bearing, `coulomb` for a drive."""
+    return "journal" if rig.drive is None else "coulomb"
+
+
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:
     """Dimensions of the bearing in the form of the core; None for a rig without a bearing."""
     b = rig.bearing

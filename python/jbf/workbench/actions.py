@@ -13,7 +13,8 @@ from urllib.parse import quote
 from starlette.responses import Response
 
 from jbf.errors import InputError
-from jbf.workbench import importer, saved_files, views
+from jbf.workbench import channels as any_channel
+from jbf.workbench import choices, effect_views, importer, saved_files, views
 from jbf.workbench.session import Session
 
 Parameters = dict[str, Any]
@@ -64,12 +65,19 @@ def signature(session: Session, parameters: Parameters) -> Any:
     """Contribution of an effect to the friction of a run, for a plot."""
     number = _number(parameters)
     span, pixels = _span(parameters), _pixels(parameters)
-    return views.signature(session, number, parameters["effect"], parameters["run"], span, pixels)
+    return effect_views.signature(
+        session, number, parameters["effect"], parameters["run"], span, pixels
+    )
 
 
 def map_of_runs(session: Session, parameters: Parameters) -> Any:
     """Mean residual of each run by speed range, for a map."""
     return views.map_of_runs(session, _number(parameters))
+
+
+def effect(session: Session, parameters: Parameters) -> Any:
+    """Catalogue entry of an effect as text."""
+    return {"text": choices.effect_text(str(parameters["name"]))}
 
 
 def _number(parameters: Parameters) -> int:
@@ -92,10 +100,29 @@ def brush(session: Session, parameters: Parameters) -> Any:
     )
 
 
-def _picture(parameters: Parameters) -> tuple[list[str], tuple[int, int]]:
-    """Names of the runs, and size in pixels, of a requested friction-speed plane."""
+def _picture(parameters: Parameters) -> tuple[list[str], tuple[int, int], str]:
+    """Names of the runs, size in pixels and horizontal axis of a requested plane."""
     size = (_pixels(parameters, "columns", 400), _pixels(parameters, "rows", 300))
-    return [str(name) for name in parameters["runs"]], size
+    axis = "position" if parameters.get("axis") == "position" else "speed"
+    return [str(name) for name in parameters["runs"]], size, axis
+
+
+def channels(session: Session, parameters: Parameters) -> Any:
+    """Names and units of the channels of a run."""
+    return any_channel.channels(session, _model(parameters), str(parameters["run"]))
+
+
+def channel(session: Session, parameters: Parameters) -> Any:
+    """Curve of a channel of a run, its derivative or its spectrum."""
+    return any_channel.channel(
+        session,
+        _model(parameters),
+        str(parameters["run"]),
+        str(parameters["channel"]),
+        str(parameters.get("transform", "value")),
+        _span(parameters),
+        _pixels(parameters),
+    )
 
 
 def open_campaign(session: Session, parameters: Parameters) -> Any:
@@ -203,16 +230,21 @@ def show(session: Session, parameters: Parameters) -> Any:
 
 
 def compare_with(session: Session, parameters: Parameters) -> Any:
-    """Select a second model to draw for comparison."""
-    session.models.set_compared(_model(parameters))
+    """Draw a further model for comparison, or no longer."""
+    session.models.compare_with(_number(parameters), bool(parameters["on"]))
     session.changed()
     return {}
 
 
 def undo(session: Session, parameters: Parameters) -> Any:
     """Display the parent of the current model."""
-    parent = session.models.node()["parent"]
-    session.show(parent)
+    session.undo()
+    return {}
+
+
+def redo(session: Session, parameters: Parameters) -> Any:
+    """Display the model that was undone last."""
+    session.redo()
     return {}
 
 
@@ -236,6 +268,9 @@ QUERIES: dict[str, Callable[[Session, Parameters], Any]] = {
     "signature": signature,
     "map": map_of_runs,
     "text": text,
+    "effect": effect,
+    "channels": channels,
+    "channel": channel,
 }
 """Handlers of GET requests by path; these change nothing."""
 COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
@@ -255,6 +290,7 @@ COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "show": show,
     "compare_with": compare_with,
     "undo": undo,
+    "redo": redo,
     "keep": keep,
 }
 """Handlers of POST requests by path; these may change the session."""

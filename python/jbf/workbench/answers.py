@@ -12,17 +12,19 @@ from typing import Any
 
 import numpy as np
 
+from jbf.comparison.axes import all_axes
 from jbf.comparison.comparison import Comparison
 from jbf.comparison.over_speed import friction_over_speed, regimes
 from jbf.diagnosis import Diagnosis, Step
 from jbf.diagnosis.power import Power
 from jbf.errors import JbfError
 from jbf.estimation.fit import Fit
+from jbf.models.catalogue import transition_speed
 from jbf.models.model import Model
 from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.reporting.tables import power_rows
-from jbf.reporting.words import verdict_sentence
+from jbf.reporting.words import headline_and_rest, verdict_sentence
 from jbf.workbench.marks import failure_marks
 
 Answer = dict[str, Any]
@@ -44,7 +46,39 @@ def of_model(comparison: Comparison) -> Answer:
         "parameters": _parameters(model, model.parameters),
         "trials": None,
         "stribeck": _stribeck(comparison),
+        "regimes": _regimes(comparison),
     }
+
+
+def _regimes(comparison: Comparison) -> list[Answer]:
+    """Mean and RMS residual in each regime of the law, or in thirds of the speeds, for the page."""
+    model = comparison.model
+    u_tr = transition_speed(model.law, model.values.tolist())
+    axes = all_axes(comparison.campaign, u_tr)
+    axis = next((a for a in axes if a.axis in ("regime", "speed range")), None)
+    if axis is None:
+        return []
+    rows = []
+    runs = zip(
+        comparison.campaign.prepared, comparison.predictions, comparison.samples.counted,
+        axis.places, strict=True,
+    )  # fmt: skip
+    residual, places = zip(
+        *(
+            ((p.friction - predicted)[counted > 0], places[counted > 0])
+            for p, predicted, counted, places in runs
+        ),
+        strict=True,
+    )
+    values, bins = np.concatenate(residual), np.concatenate(places)
+    for number, name in enumerate(axis.labels):
+        part = values[bins == number]
+        if len(part):
+            rms = float(np.sqrt(np.mean(part**2)))
+            rows.append(
+                {"name": name, "samples": len(part), "rms": rms, "mean": float(np.mean(part))}
+            )
+    return rows
 
 
 def _stribeck(comparison: Comparison) -> Answer:
@@ -117,6 +151,7 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
     content = diagnosis.to_dict()
     next_run = diagnosis.experiment
     return {
+        "headline": headline_and_rest(diagnosis)[0],
         "sentence": verdict_sentence(diagnosis, ""),
         "summary": diagnosis.summary(full=True),
         "next_run": None if next_run is None else next_run.run.to_csv(),
@@ -129,7 +164,7 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
 
 
 def write_records(comparison: Comparison, folder: Path) -> Answer:
-    """Write time, speed, friction, prediction and mask of included samples, one file per run."""
+    """Write one file per run: time, speed, friction, prediction, included samples and position."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = zip(
         comparison.campaign.prepared,
@@ -140,6 +175,15 @@ def write_records(comparison: Comparison, folder: Path) -> Answer:
     for number, (p, predicted, counted) in enumerate(rows):
         np.save(
             folder / f"{number}.npy",
-            np.vstack([p.run.time_s, p.motion.velocity, p.friction, predicted, counted]),
+            np.vstack(
+                [
+                    p.run.time_s,
+                    p.motion.velocity,
+                    p.friction,
+                    predicted,
+                    counted,
+                    p.motion.angle_rad,
+                ]
+            ),
         )
     return {"record_names": [p.run.name for p in comparison.campaign.prepared]}

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from jbf.errors import InputError
+from jbf.workbench.banner import banner_of
 
 LARGE = ("model", "report")
 """Keys of large contents, which the page requests separately."""
@@ -23,18 +24,21 @@ class Models:
     current
         Number of the model that the plots show.
     compared
-        Number of a second model that is drawn for comparison.
+        Numbers of further models that are drawn for comparison.
+    undone
+        Numbers of the models to which `redo` returns, the next one last.
     """
 
     nodes: dict[int, dict[str, Any]] = field(default_factory=dict)
     current: int | None = None
-    compared: int | None = None
+    compared: list[int] = field(default_factory=list)
+    undone: list[int] = field(default_factory=list)
 
     def add(self, parent: int | None, words: str, content: Mapping[str, Any]) -> int:
         """Add a model to the tree, make it the current one, and return its number."""
         number = max(self.nodes, default=0) + 1
         self.nodes[number] = {"id": number, "parent": parent, "words": words, **content}
-        self.current = number
+        self.choose(number)
         return number
 
     def node(self, number: int | None = None) -> dict[str, Any]:
@@ -53,14 +57,35 @@ class Models:
     def choose(self, number: int | None) -> None:
         """Make a model the current one; None displays only the records."""
         self.current = None if number is None else int(self.node(number)["id"])
+        self.undone.clear()
+        self.compared = [other for other in self.compared if other != self.current]
 
-    def set_compared(self, number: int | None) -> None:
-        """Choose a second model that is drawn for comparison; None for none."""
-        self.compared = None if number is None else int(self.node(number)["id"])
+    def compare_with(self, number: int, on: bool) -> None:
+        """Draw a further model for comparison, or no longer."""
+        self.node(number)
+        self.compared = [other for other in self.compared if other != number] + [number] * on
 
-    def undo(self) -> None:
+    def undo(self) -> int | None:
         """Make the parent of the current model the current one; the model stays in the tree."""
-        self.current = self.node()["parent"]
+        undone, parent = [*self.undone, int(self.node()["id"])], self.node()["parent"]
+        self.choose(parent)
+        self.undone = undone
+        return self.current
+
+    def redo(self) -> int:
+        """Make the model that was undone last the current one again.
+
+        Raises
+        ------
+        InputError
+            No model was undone.
+        """
+        if not self.undone:
+            raise InputError(problem="no model was undone", remedy="select one of the list")
+        *rest, number = self.undone
+        self.choose(number)
+        self.undone = rest
+        return number
 
     def ledger(self) -> list[dict[str, Any]]:
         """Errors of the models from the first one to the current one."""
@@ -77,10 +102,11 @@ class Models:
         return {
             "current": self.current,
             "compared": self.compared,
+            "can_redo": bool(self.undone),
             "ledger": self.ledger(),
             "nodes": [
                 {key: value for key, value in node.items() if key not in LARGE}
-                | {"has_report": "report" in node}
+                | {"has_report": "report" in node, "banner": banner_of(node)}
                 for node in self.nodes.values()
             ],
         }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.run import Run
-from jbf.workbench.thinning import Stretch, thinned
+from jbf.workbench.thinning import stretch_of, thinned
 
 Array = npt.NDArray[np.float64]
 DIGITS = 6
@@ -32,6 +32,8 @@ class RunSeries:
         Predicted friction; None without a model.
     counted
         True at included samples; None without a model.
+    position
+        Position or angle of the run; None if it was not recorded.
     """
 
     time_s: Array
@@ -39,6 +41,7 @@ class RunSeries:
     friction: Array | None
     model_n: Array | None = None
     counted: Array | None = None
+    position: Array | None = None
 
     @cached_property
     def residual_n(self) -> Array | None:
@@ -47,14 +50,20 @@ class RunSeries:
             return None
         return np.where(self.counted > 0, self.friction - self.model_n, np.nan)
 
+    def across(self, axis: str) -> Array | None:
+        """Values on the horizontal axis of the plane: `speed` or `position`."""
+        return self.position if axis == "position" else self.velocity
+
     def columns(self) -> dict[str, Array]:
         """Available time series by name."""
-        candidates: Mapping[str, Array | None] = {
+        candidates: dict[str, Array | None] = {
             "velocity_m_s": self.velocity,
             "friction_n": self.friction,
             "model_n": self.model_n,
             "residual_n": self.residual_n,
         }
+        if self.counted is not None and self.friction is not None:
+            candidates["unused_n"] = np.where(self.counted > 0, np.nan, self.friction)
         return {name: values for name, values in candidates.items() if values is not None}
 
 
@@ -62,24 +71,23 @@ class RunSeries:
 def as_read(run: Run) -> RunSeries:
     """Time series of a run as in its file."""
     speed = run.velocity
+    path = run.position_m if run.position_m is not None else run.angle_rad
     if not np.any(np.isfinite(speed)):
-        path = run.position_m if run.position_m is not None else run.angle_rad
         speed = np.zeros(len(run)) if path is None else np.gradient(path, run.time_s)
-    return RunSeries(run.time_s, speed, run.friction)
+    return RunSeries(run.time_s, speed, run.friction, position=path)
 
 
 @lru_cache(maxsize=512)
 def as_modelled(file: Path) -> RunSeries:
     """Time series of a run with a model's prediction, from the file written by the fit."""
-    time, speed, friction, model, counted = map(np.asarray, np.load(file, mmap_mode="r"))
-    return RunSeries(time, speed, friction, model, counted)
+    rows = map(np.asarray, np.load(file, mmap_mode="r"))
+    time, speed, friction, model, counted, position = rows
+    return RunSeries(time, speed, friction, model, counted, position)
 
 
 def drawn(data: RunSeries, from_s: float | None, to_s: float | None, pixels: int) -> dict[str, Any]:
     """Time series of an interval of a run, reduced to the resolution of a plot."""
-    begin = data.time_s[0] if from_s is None else from_s
-    end = data.time_s[-1] if to_s is None else to_s
-    stretch = Stretch.between(data.time_s, float(begin), float(end), pixels)
+    stretch = stretch_of(data.time_s, (from_s, to_s), pixels)
     reduced = thinned(data.time_s, data.columns(), stretch)
     return {
         "samples": len(data.time_s),

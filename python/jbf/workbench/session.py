@@ -9,15 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from jbf.errors import InputError
-from jbf.models.catalogue import effects as catalogue
-from jbf.models.catalogue import find_effect, find_law, laws, reason_not_applicable
-from jbf.models.chain import check_rig
+from jbf.models.catalogue import find_effect, find_law
+from jbf.models.chain import check_rig, default_law
 from jbf.models.model import Model
 from jbf.models.number_format import number as written
 from jbf.models.vocabulary import AUTO
 from jbf.records.counts import count_of
-from jbf.records.rig import Rig
 from jbf.workbench.bench import Bench
+from jbf.workbench.choices import effects_for, first_law, laws_for, units_of_rig
 from jbf.workbench.equivalent_commands import commands, python
 from jbf.workbench.files import Folder
 from jbf.workbench.jobs import Ending, Jobs
@@ -123,11 +122,7 @@ class Session:
             for name in effects:
                 find_effect(name)
             if kind == "round" and law == AUTO:
-                remedy = "choose a law, or diagnose"
-                raise InputError(
-                    problem="a diagnosis selects the law for auto; a fit requires one",
-                    remedy=remedy,
-                )
+                law = default_law(bench.rig)
             place = self._new_place()
             order = Order(kind, bench.rig, bench.used_runs(), place, law, effects=tuple(effects))
             words = _words(kind, law, effects)
@@ -155,12 +150,27 @@ class Session:
         """
         with self.lock:
             self.models.choose(number)
-            if number is not None and self.records(number) is None:
-                # If another job is running, the comparison is postponed.
-                self._owed = self.jobs.job is not None
-                if not self._owed:
-                    self._compare(number)
+            self._compare_if_needed(number)
         self.changed()
+
+    def undo(self) -> None:
+        """Display the parent of the current model."""
+        with self.lock:
+            self._compare_if_needed(self.models.undo())
+        self.changed()
+
+    def redo(self) -> None:
+        """Display the model that was undone last."""
+        with self.lock:
+            self._compare_if_needed(self.models.redo())
+        self.changed()
+
+    def _compare_if_needed(self, number: int | None) -> None:
+        """Start the comparison of a model without records; postpone it if another job runs."""
+        if number is not None and self.records(number) is None:
+            self._owed = self.jobs.job is not None
+            if not self._owed:
+                self._compare(number)
 
     def _compare(self, number: int) -> None:
         """Start the comparison of a model of the tree with the runs."""
@@ -250,11 +260,12 @@ class Session:
                 "version": self.version,
                 "folder": str(self.folder.root),
                 "rig": None if bench is None else bench.rig_name,
-                "units": None if bench is None else _units(bench.rig),
+                "units": None if bench is None else units_of_rig(bench.rig),
                 "runs": [] if bench is None else bench.to_list(),
                 "law": self.law,
-                "laws": [*laws(), AUTO],
-                "effects": self._effects(),
+                "laws": laws_for(None if bench is None else bench.rig),
+                "fit_law": self._fit_law(),
+                "effects": effects_for(self._law_of_next_fit()),
                 "job": None if job is None else job.to_dict(),
                 "message": self.message,
                 **self.models.to_dict(),
@@ -265,47 +276,21 @@ class Session:
                 state["command"], state["python"] = commands(node, steps), python(node, steps)
             return state
 
-    def _effects(self) -> list[dict[str, Any]]:
+    def _fit_law(self) -> str:
+        """Law of a fit without a parent: the chosen one, or that of `jbf fit` for `auto`."""
+        if self.law == AUTO and self.bench is not None:
+            return default_law(self.bench.rig)
+        return self.law
+
+    def _law_of_next_fit(self) -> str:
+        """Law of the displayed model; without a model, that of the first fit."""
         node = self.models.nodes.get(self.models.current or 0)
-        law = self.law if node is None else str(node["law"])
-        return [
-            {
-                "name": page.name,
-                "summary": page.summary,
-                "refused": None if law == AUTO else reason_not_applicable(page, law),
-            }
-            for page in catalogue().values()
-        ]
+        return self._fit_law() if node is None else str(node["law"])
 
     def close(self) -> None:
         """Stop the running job and delete the temporary files."""
         self.jobs.cancel(at_once=True)
         self._kept.cleanup()
-
-
-def first_law(rig: Rig) -> str:
-    """Initial base law for a rig.
-
-    The law is `auto` for a drive, `journal` if the bearing data are complete, otherwise `stribeck`.
-    """
-    if rig.drive is not None:
-        return AUTO
-    try:
-        check_rig(rig, "journal")
-    except InputError:
-        return "stribeck"
-    return "journal"
-
-
-def _units(rig: Rig) -> dict[str, str]:
-    quantities = rig.quantities
-    return {
-        "force": quantities.force,
-        "speed": quantities.speed,
-        "velocity": quantities.velocity,
-        "friction": quantities.friction,
-        "noun": quantities.noun,
-    }
 
 
 def _words(kind: Kind, law: str, effects: Sequence[str]) -> str:

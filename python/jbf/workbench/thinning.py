@@ -46,6 +46,17 @@ class Stretch:
         return cls(first, max(end, first), max(pixels, 1))
 
 
+def stretch_of(time_s: Array, span: tuple[float | None, float | None], pixels: int) -> Stretch:
+    """Section of a record for an interval, s, in which None is an open end."""
+    begin, end = span
+    return Stretch.between(
+        time_s,
+        float(time_s[0] if begin is None else begin),
+        float(time_s[-1] if end is None else end),
+        pixels,
+    )
+
+
 def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> dict[str, Array]:
     """Reduce a section of a record to two points per pixel, unless it has few samples.
 

@@ -1,4 +1,4 @@
-"""Data of the workbench's plots: time series, plane, map over all runs, effect signatures."""
+"""Data of the workbench's plots: time series, plane, map over all runs."""
 
 from __future__ import annotations
 
@@ -10,13 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.models.catalogue import effects as catalogue
-from jbf.models.model import Model
 from jbf.workbench.density import Density, Size, density
 from jbf.workbench.plane import within
 from jbf.workbench.series import RunSeries, as_modelled, as_read, drawn, listed
 from jbf.workbench.session import Session
-from jbf.workbench.thinning import Stretch, ranges_of, thinned
+from jbf.workbench.thinning import ranges_of, stretch_of, thinned
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -42,34 +40,47 @@ def series(
     session: Session, number: int | None, name: str, span: tuple[float | None, float | None],
     pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
-    """Data of a section of a run for a plot, with the prediction of a second model if selected."""
+    """Data of a section of a run for a plot, with the predictions of the compared models."""
     run = series_of_run(session, number, name)
     section = drawn(run, *span, pixels)
-    compared = session.models.compared
-    if compared is not None and compared != number:
-        second = series_of_run(session, compared, name)
-        if second.model_n is not None and len(second.time_s) == len(run.time_s):
-            stretch = Stretch.between(
-                run.time_s, float(span[0] or run.time_s[0]),
-                float(run.time_s[-1] if span[1] is None else span[1]), pixels,
-            )  # fmt: skip
-            columns = {"compared_n": second.model_n}
-            if second.residual_n is not None:
-                columns["compared_residual_n"] = second.residual_n
-            reduced = thinned(run.time_s, columns, stretch)
-            section |= {name: listed(reduced[name]) for name in columns}
+    section["others"] = [
+        {"model": other, **curves}
+        for other in session.models.compared
+        if other != number and (curves := _curves_of(session, other, name, run, span, pixels))
+    ]
     return section
 
 
-def plane(session: Session, number: int | None, names: list[str], size: Size) -> dict[str, Any]:
-    """Data of the friction-speed plane of some runs: density of samples and of the model."""
-    return _density(session, number, names, size).to_dict()
+def _curves_of(
+    session: Session, number: int, name: str, run: RunSeries,
+    span: tuple[float | None, float | None], pixels: int,
+) -> dict[str, Any] | None:  # fmt: skip
+    """Prediction and residual of a further model for a plot; None if it has no prediction."""
+    other = series_of_run(session, number, name)
+    if other.model_n is None or len(other.time_s) != len(run.time_s):
+        return None
+    columns = {"model_n": other.model_n}
+    if other.residual_n is not None:
+        columns["residual_n"] = other.residual_n
+    reduced = thinned(run.time_s, columns, stretch_of(run.time_s, span, pixels))
+    return {column: listed(reduced[column]) for column in columns}
 
 
-def _density(session: Session, number: int | None, names: list[str], size: Size) -> Density:
-    return density(
-        tuple(run for name, run in series_by_run(session, number).items() if name in names), size
-    )
+def plane(
+    session: Session, number: int | None, names: list[str], size: Size, axis: str = "speed"
+) -> dict[str, Any]:
+    """Data of the friction-speed or friction-position plane of some runs.
+
+    The data are the density of samples and of the model, and the samples that a fit does not use.
+    """
+    return _density(session, number, names, size, axis).to_dict()
+
+
+def _density(
+    session: Session, number: int | None, names: list[str], size: Size, axis: str
+) -> Density:
+    shown = (run for name, run in series_by_run(session, number).items() if name in names)
+    return density(tuple(shown), size, axis)
 
 
 def masks_of(
@@ -82,7 +93,8 @@ def masks_of(
 
     A selection is one of three kinds: an interval of a run (`run`, `from_s`, `to_s`); a `box` of
     the plane in all runs or in one `run`; or the `mark` of a model's failure by its index. The box
-    contains smallest and largest speed and force, with None for an open end.
+    contains smallest and largest speed (or position, if `axis` is `position`) and force, with None
+    for an open end.
     """
     if "mark" in selection:
         return _mask_of_bins(session, number, int(selection["mark"]), runs)
@@ -92,9 +104,10 @@ def masks_of(
         ends = zip(selection["box"], (-np.inf, np.inf, -np.inf, np.inf), strict=True)
         left, right, low, high = (open_ if end is None else float(end) for end, open_ in ends)
         for name, run in runs.items():
-            if run.friction is not None and only in (None, name):
+            across = run.across(str(selection.get("axis", "speed")))
+            if run.friction is not None and across is not None and only in (None, name):
                 box = (left, right, low, high)
-                masks[name] = within(run.velocity, run.friction, box)
+                masks[name] = within(across, run.friction, box)
     elif only in masks:
         time = runs[only].time_s
         first, last = sorted((float(selection["from_s"]), float(selection["to_s"])))
@@ -128,7 +141,7 @@ def _mask_of_bins(
 
 def brushed(
     session: Session, number: int | None, selection: Mapping[str, Any], names: list[str],
-    size: Size,
+    size: Size, axis: str = "speed",
 ) -> dict[str, Any]:  # fmt: skip
     """Statistics and positions of selected samples, for all views.
 
@@ -167,7 +180,7 @@ def brushed(
         "mean_n": float(np.mean(residual_values)) if len(residual_values) else None,
         "speeds_m_s": [min(ends), max(ends)] if ends else None,
         "cells": cells,
-        "selected": _density(session, number, names, size).layer_of(
+        "selected": _density(session, number, names, size, axis).layer_of(
             {run: masks[name] for name, run in runs.items()}
         ),
     }
@@ -211,45 +224,3 @@ def map_of_runs(session: Session, number: int) -> dict[str, Any]:
         sums = np.bincount(place, weights=residual[ok], minlength=len(edges) - 1)
         rows.append(listed(np.where(counts > 0, sums / np.maximum(counts, 1), np.nan)))
     return {"runs": list(runs), "edges_m_s": edges.tolist(), "mean_n": rows}
-
-
-def signature(
-    session: Session, number: int, effect: str, name: str,
-    span: tuple[float | None, float | None], pixels: int,
-) -> dict[str, Any]:  # fmt: skip
-    """Contribution of an effect to the friction of a run, scaled to the residual.
-
-    The contribution is that at the typical strength. The factor is determined by least squares.
-    """
-    run = session.on_bench().run(name)
-    run_series = series_of_run(session, number, name)
-    base = session.model(number)
-    if effect in base.effects or effect not in catalogue():
-        raise InputError(problem=f"{effect} is in the model already, or unknown", remedy="choose")
-    richer = Model(base.rig, base.law, [*base.effects, effect], _usual(base, effect), base.clock)
-    added = richer.predict(run) - base.predict(run)
-    added = np.interp(run_series.time_s, run.time_s, added)
-    residual = run_series.residual_n
-    if residual is None:
-        raise InputError(problem="this model has not been compared yet", remedy="wait a moment")
-    ok = np.isfinite(residual) & np.isfinite(added)
-    square = float(added[ok] @ added[ok])
-    scale = float(residual[ok] @ added[ok]) / square if square > 0 else 0.0
-    stretch = Stretch.between(
-        run_series.time_s,
-        float(run_series.time_s[0] if span[0] is None else span[0]),
-        float(run_series.time_s[-1] if span[1] is None else span[1]),
-        pixels,
-    )
-    reduced = thinned(
-        run_series.time_s, {"residual_n": residual, "signature_n": scale * added}, stretch
-    )
-    return {"times_usual": scale, **{k: listed(v, 11 if k == "time_s" else 6)
-                                     for k, v in reduced.items()}}  # fmt: skip
-
-
-def _usual(base: Model, effect: str) -> dict[str, float]:
-    """Parameter values of a model with an additional effect of typical strength."""
-    values = {name: p.value for name, p in base.parameters.items()}
-    page = catalogue()[effect]
-    return {**values, **{f"{effect}.{p.name}": p.starts[0] for p in page.parameters}}

@@ -1,4 +1,4 @@
-// Curves over time by uPlot, with stretches marked behind them.
+// Curves over time (or another axis) by uPlot, with stretches marked behind them.
 import { colour } from "./dom.js";
 
 const axis = (label, extra = {}) => ({
@@ -10,25 +10,38 @@ const axis = (label, extra = {}) => ({
 export const curve = (name, label, tint, extra = {}) =>
   ({ name, label, stroke: () => colour(tint), width: 1.2, spanGaps: false, points: { show: false }, ...extra });
 
+// Single samples as hollow points.
+export const hollow = (name, label, tint) => curve(name, label, tint, {
+  width: 0, paths: () => null, points: { show: true, size: 5, width: 1, stroke: () => colour(tint), fill: () => colour("paper") } });
+
 export class Chart {
-  // `place` an element; `curves` as above; `brushed(from, to)` is told what was dragged over.
-  constructor(place, { curves, unit, height = 190, brushed, zoomed, mode = () => "zoom", sync, legend = true }) {
-    this.place = place; this.curves = curves; this.marks = []; this.selected = []; this.height = height;
-    const self = this;
+  // `place` an element; `curves` as above; `brushed(from, to)` and `zoomed(from, to)` receive what was dragged over.
+  constructor(place, { curves, unit, height = 190, brushed, zoomed, mode = () => "zoom", sync, legend = true, across = "time (s)", scales = {} }) {
+    Object.assign(this, { place, curves, height, marks: [], selected: [], data: null });
+    this.settings = { unit, brushed, zoomed, mode, sync, legend, across, scales };
+    this.build();
+    new ResizeObserver(() => this.plot.setSize({ width: this.width(), height })).observe(place);
+  }
+
+  width() { return Math.max(this.place.clientWidth, 240); }
+
+  build() {
+    const { unit, brushed, zoomed, mode, sync, legend, across, scales } = this.settings, { height, curves } = this;
+    this.plot?.destroy();
     const options = {
-      width: Math.max(place.clientWidth, 320), height,
-      scales: { x: { time: false } },
+      width: this.width(), height,
+      scales: { x: { time: false, ...scales.x }, y: { ...scales.y } },
       legend: { show: legend, live: true },
       cursor: {
         sync: sync ? { key: sync } : undefined,
         drag: { x: true, y: false, setScale: false },
         bind: { dblclick: () => () => { if (zoomed) zoomed(null, null); } },
       },
-      axes: [axis("time (s)", { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 54, labelGap: 2, space: height < 150 ? 18 : 30 })],
-      series: [{ label: "t (s)" }, ...curves],
+      axes: [axis(across, { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 54, labelGap: 2, space: height < 150 ? 18 : 30 })],
+      series: [{ label: across }, ...curves],
       hooks: {
-        drawClear: [(u) => self.shade(u)],
-        draw: [() => self.drawn?.()],
+        drawClear: [(u) => this.shade(u)],
+        draw: [() => this.drawn?.()],
         setSelect: [(u) => {
           if (u.select.width < 3) return;
           const from = u.posToVal(u.select.left, "x");
@@ -38,14 +51,25 @@ export class Chart {
         }],
       },
     };
-    this.plot = new uPlot(options, [[0], ...curves.map(() => [null])], place);
-    new ResizeObserver(() => this.plot.setSize({ width: Math.max(place.clientWidth, 320), height })).observe(place);
+    this.plot = new uPlot(options, [[0], ...curves.map(() => [null])], this.place);
+    this.built?.();
   }
 
-  show(data) {
-    const none = data.time_s.map(() => null);
-    this.plot.setData([data.time_s, ...this.curves.map((c) => data[c.name] ?? none)]);
+  // Other curves, if they differ from the present ones.
+  use(curves) {
+    const names = (list) => JSON.stringify(list.map((c) => [c.name, c.label]));
+    if (names(curves) === names(this.curves)) return;
+    this.curves = curves; this.build();
   }
+
+  show(data, x = data.time_s) {
+    const none = x.map(() => null);
+    this.data = { names: [this.settings.across, ...this.curves.map((c) => c.label)], columns: [x, ...this.curves.map((c) => data[c.name] ?? none)] };
+    this.plot.setData(this.data.columns);
+  }
+
+  canvas() { return this.plot.ctx.canvas; }
+  table() { return this.data; }
 
   // Pairs of instants, s: what fails, and what is selected.
   mark(marks, selected) {

@@ -85,7 +85,7 @@ export class DataSection {
     const found = await this.page.do("look", { file: files[0] });
     if (!found) return;
     const importing = (now) => {
-      this.page.importing = now; this.page.next();
+      this.page.importing = now; this.page.banner();
       for (const part of [this.shelf, this.raw]) part.style.display = now ? "none" : "";
     };
     importing(true);
@@ -112,8 +112,8 @@ export class DataSection {
     }
     this.trim(run);
     const asked = { run: run.name, from_s: page.span[0], to_s: page.span[1], pixels: 1000 };
-    let found;
-    try { found = await get("series", asked); } catch (error) { page.say(error.message); return; }
+    const found = await page.ask(() => get("series", asked));
+    if (!found || !this.chart || this.drawn !== run.name) return;
     const out = run.trim ? [[run.from_s, run.trim[0]], [run.trim[1], run.to_s]] : [];
     for (const chart of [this.chart, this.speed]) { chart.show(found); chart.mark(out, []); }
     this.handles.show(run);

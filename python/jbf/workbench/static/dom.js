@@ -37,5 +37,8 @@ export function put(place, ...children) {
 }
 
 export function key(name, words) {
-  return [h("span", { class: `key ${name}` }), words];
+  return h("span", { class: "keyed" }, h("span", { class: `key ${name}` }), words);
 }
+
+// A ratio to the noise, as in "12 ×".
+export const times = (ratio) => (ratio === null || ratio === undefined ? "–" : `${ratio < 9.95 ? ratio.toFixed(1) : Math.round(ratio)} ×`);

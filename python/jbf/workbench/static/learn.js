@@ -1,9 +1,9 @@
 // Section 3: what is missing: candidates with their evidence, one click adds, the error falls.
 import { get } from "./api.js";
+import { showCandidates } from "./candidates.js";
 import { Chart, curve } from "./chart.js";
 import { h, number, put } from "./dom.js";
 import { showLedger } from "./ledger.js";
-import { showRanking } from "./ranking.js";
 import { correlations, parameters, power } from "./tables.js";
 
 export class LearnSection {
@@ -14,8 +14,9 @@ export class LearnSection {
     this.sketch = h("div", { class: "plot" }); this.sketched = h("p", { class: "faint" });
     place.append(this.head, this.verdict,
       h("div", { class: "two wide" },
-        h("section", {}, h("h2", {}, "Error by step"), this.ledger, h("h2", {}, "Predicted contribution of the selected effect"), this.sketched, this.sketch),
-        h("section", {}, h("h2", {}, "Candidates"), this.ranks)),
+        h("section", {}, h("h2", {}, "Error by step"), this.ledger),
+        h("section", {}, h("h2", {}, "Predicted contribution of the selected effect"), this.sketched, this.sketch)),
+      h("section", {}, h("h2", {}, "What could be missing"), this.ranks),
       h("h2", {}, "Parameters"), this.values, this.more);
   }
 
@@ -25,19 +26,18 @@ export class LearnSection {
     if (!before || now !== this.was) { this.was = now; this.show(); }
   }
 
-  looked() { showRanking(this.page, this.ranks); this.draw(); }
+  looked() { showCandidates(this.page, this.ranks); this.draw(); }
 
   show() {
     const { page } = this, { state } = page, node = page.model, busy = Boolean(state.job) || !state.runs.length;
     this.lead();
     const law = h("select", { "aria-label": "law", "data-key": "law", disabled: busy, onchange: (e) => page.do("law", { law: e.target.value }) },
-      state.laws.map((name) => h("option", { value: name, selected: name === state.law }, name === "auto" ? "auto (selected from the data)" : name)));
+      state.laws.map(({ name, summary, refused }) => h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name}: ${refused ?? summary}`)));
     put(this.head, h("label", {}, "Law ", law),
-      h("button", { "data-key": "fit-law", disabled: busy || state.law === "auto", title: state.law === "auto" ? "choose a law first" : "", onclick: () => page.do("fit", { effects: [], parent: null }) }, "Fit the base law"),
-      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"),
-      state.law === "auto" && !node ? h("span", { class: "faint" }, "For a manual fit choose a law.") : null);
+      h("button", { "data-key": "fit-law", disabled: busy, onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} alone`),
+      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"));
     put(this.verdict, node?.diagnosis ? node.diagnosis.sentence : "");
-    showLedger(page, this.ledger); showRanking(page, this.ranks);
+    showLedger(page, this.ledger); showCandidates(page, this.ranks);
     put(this.values, node ? h("div", { class: "two" }, parameters(node), node.correlations ? correlations(node.correlations) : h("div")) : h("p", { class: "faint" }, "None yet."));
     put(this.more, node?.diagnosis ? this.diagnosis_details(node.diagnosis) : null,
       node?.power?.length ? h("details", { open: Boolean(node.diagnosis) }, h("summary", { "data-key": "power" }, "Detection limits of these runs (80 % power)"), power(node.power)) : null,
@@ -55,16 +55,19 @@ export class LearnSection {
   }
 
   async draw() {
-    const { page } = this, node = page.model, ask = Symbol(); this.ask = ask;
-    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Select an effect in the ranking to draw it over the residual."); return; }
-    try {
-      const found = await get("signature", { run: page.run, model: node.id, effect: page.effect, from_s: page.span[0], to_s: page.span[1], pixels: 800 });
-      if (this.ask !== ask) return;
-      this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "predicted contribution", "beside", { width: 1.8 })],
-        zoomed: (from, to) => page.look({ span: [from, to] }) });
-      this.chart.show(found);
-      put(this.sketched, `${page.effect} on ${page.run}: fits the residual best at ${number(found.times_usual, 2)} times its typical strength. Select another run on the left.`);
-    } catch (error) { put(this.sketch); this.chart = null; put(this.sketched, `${page.effect}: ${error.message}`); }
+    const { page } = this, node = page.model, ask = Symbol(); this.latest = ask;
+    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Press Show on an effect to draw it over the residual."); return; }
+    const asked = { run: page.run, model: node.id, effect: page.effect, from_s: page.span[0], to_s: page.span[1], pixels: 800 };
+    let found;
+    try { found = await get("signature", asked); } catch (error) {
+      if (this.latest === ask) { put(this.sketch); this.chart = null; put(this.sketched, `${page.effect}: ${error.message}`); }
+      return;
+    }
+    if (this.latest !== ask) return;
+    this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "predicted contribution", "beside", { width: 1.8 })],
+      zoomed: (from, to) => page.look({ span: [from, to] }) });
+    this.chart.show(found);
+    put(this.sketched, `${page.effect} on ${page.run}: fits the residual best at ${number(found.times_usual, 2)} times its typical strength. Select another run on the left.`);
   }
 
   diagnosis_details(d) {

@@ -1,14 +1,16 @@
 // The page: its sections, the current selection, and news from the server.
-import { download, follow, post } from "./api.js";
+import { download, follow, get, post } from "./api.js";
+import { showBanner } from "./banner.js";
 import { h, put } from "./dom.js";
 import { DataSection } from "./data.js";
 import { SeeSection } from "./see.js";
 import { LearnSection } from "./learn.js";
 import { KeepSection } from "./keep.js";
-import { showNext } from "./next.js";
 import { showModels, showRuns } from "./side.js";
+import { startTheme } from "./theme.js";
 
 const SECTIONS = { Data: DataSection, Explore: SeeSection, Model: LearnSection, Export: KeepSection };
+const DEFAULT_UNITS = { force: "N", speed: "m/s", length: "m", velocity: "speed", friction: "friction", noun: "force" };
 const place = (id) => document.getElementById(id);
 
 class Page {
@@ -19,36 +21,43 @@ class Page {
     // Whether a recording is being imported.
     this.importing = false;
     document.addEventListener("keydown", (event) => this.key(event));
+    startTheme(place("theme"), () => { if (this.section) this.enter(this.name); });
+    if (innerWidth <= 1000) for (const id of ["runs-part", "models-part"]) place(id).open = false;
   }
 
   get model() { return this.state.nodes.find((node) => node.id === this.state.current) ?? null; }
-  get units() { return this.state.units ?? { force: "N", speed: "m/s", velocity: "speed", friction: "friction", noun: "force" }; }
+  get units() { return this.state.units ?? DEFAULT_UNITS; }
 
   update(state) {
     const before = this.state;
     this.state = state;
     const names = state.runs.map((run) => run.name);
-    if (!names.includes(this.run)) { this.run = names[0] ?? null; this.span = [null, null]; this.selection = null; }
+    if (!names.includes(this.run)) { this.run = names[0] ?? null; this.span = [null, null]; this.selection = null; this.brushed = null; }
+    // An error about files that are no longer open is out of date.
+    if (before && before.rig !== state.rig) this.own = false;
     // A mark is one of a model's own.
     if (before && before.current !== state.current && this.selection?.mark !== undefined) { this.selection = null; this.brushed = null; }
     this.tabs(); this.head();
+    for (const id of ["runs-part", "models-part"]) place(id).style.display = names.length ? "" : "none";
+    place("columns").className = names.length ? "" : "alone";
     showRuns(this, place("runs")); showModels(this, place("models"));
     if (!this.section) this.enter(names.length ? this.name : "Data");
     else this.section.update(before);
-    this.next();
+    this.banner();
     document.body.dataset.version = state.version;
   }
 
   enter(name) {
     this.name = name;
-    place("section").replaceChildren();
-    this.section = new SECTIONS[name](this, place("section"));
+    const section = place("section");
+    section.replaceChildren(); section.setAttribute("aria-label", name);
+    this.section = new SECTIONS[name](this, section);
     this.tabs();
     this.section.update(null);
-    this.next();
+    this.banner();
   }
 
-  next() { showNext(this, place("next")); }
+  banner() { showBanner(this, place("banner")); }
 
   tabs() {
     put(place("tabs"), Object.keys(SECTIONS).map((name, i) => h("button", {
@@ -60,8 +69,8 @@ class Page {
   head() {
     const { job, message } = this.state;
     put(place("job"), job ? [
-      h("progress", job.total ? { value: job.done, max: job.total } : {}),
-      ` ${job.words}: ${job.message}, ${job.elapsed_s.toFixed(0)} s `,
+      h("progress", { "aria-label": "progress", ...(job.total ? { value: job.done, max: job.total } : {}) }),
+      `${job.words}: ${job.message}, ${job.elapsed_s.toFixed(0)} s`,
       h("button", { "data-key": "cancel", onclick: () => this.do("cancel") }, "Cancel"),
     ] : []);
     if (!this.own) { place("message").textContent = message.words ?? ""; place("message").className = message.kind ?? ""; }
@@ -72,9 +81,23 @@ class Page {
     place("message").textContent = words; place("message").className = kind;
   }
 
-  // Ask the server to do something; what goes wrong is said where it can be read.
+  // Ask the server to do something; an error is shown.
   async do(name, asked = {}) {
     try { this.say("", ""); return await post(name, asked); } catch (error) { this.say(error.message); return null; }
+  }
+
+  // Data for a plot of one run and model. An error is not shown if the session has changed meanwhile:
+  // the request was then about files or a model that are no longer open.
+  async ask(request) {
+    const version = ({ rig, current, runs }) => JSON.stringify([rig, current, runs.map((run) => run.file)]);
+    const before = version(this.state);
+    try { return await request(); } catch (error) {
+      let now;
+      try { now = await get("state"); } catch { now = null; }
+      if (now && version(now) !== before) { this.update(now); return null; }
+      this.say(error.message);
+      return null;
+    }
   }
 
   // A text as a file of the browser's own.
@@ -93,10 +116,12 @@ class Page {
   selected(brushed) { this.brushed = brushed; showRuns(this, place("runs")); }
 
   key(event) {
-    if (["INPUT", "TEXTAREA", "SELECT"].includes(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
+    const typing = event.target.matches("textarea, select, input:not([type=checkbox], [type=radio])");
+    if (typing || document.querySelector("dialog[open]") || event.ctrlKey || event.altKey || event.metaKey) return;
     const name = Object.keys(SECTIONS)[Number(event.key) - 1];
     if (name) this.enter(name);
     else if (event.key === "z" && this.model) this.do("undo");
+    else if (event.key === "y" && this.state.can_redo) this.do("redo");
     else if (event.key === "Escape" && this.selection) this.look({ selection: null });
   }
 }

@@ -59,8 +59,8 @@ export class Plane {
     this.draw();
   }
 
-  show(found, units) {
-    Object.assign(this, { found, units });
+  show(found, units, axis) {
+    Object.assign(this, { found, units, axis });
     this.layers = [this.layer([[found.measured, "measured"], [found.model, "model"]]), null];
     this.draw();
   }
@@ -93,11 +93,37 @@ export class Plane {
     return small;
   }
 
+  // Samples that the fit does not use, hollow.
+  rings() {
+    const { frame: f, unused } = this.found, { ctx } = this.axes;
+    ctx.strokeStyle = colour("measured"); ctx.fillStyle = colour("paper"); ctx.lineWidth = 1;
+    for (const [column, row] of unused) {
+      ctx.beginPath();
+      ctx.arc(this.axes.x(f.left + (column + 0.5) / f.columns * (f.right - f.left)), this.axes.y(f.low + (row + 0.5) / f.rows * (f.high - f.low)), 2.2, 0, 7);
+      ctx.fill(); ctx.stroke();
+    }
+  }
+
+  // Pixels with measured samples: place, force and density (0 to 255).
+  table() {
+    if (!this.found) return null;
+    const f = this.found.frame, level = bytes(this.found.measured), columns = [[], [], []];
+    level.forEach((value, i) => {
+      if (!value) return;
+      columns[0].push((f.left + (i % f.columns + 0.5) / f.columns * (f.right - f.left)).toPrecision(6));
+      columns[1].push((f.low + (Math.floor(i / f.columns) + 0.5) / f.rows * (f.high - f.low)).toPrecision(6));
+      columns[2].push(value);
+    });
+    return { names: [this.axis, "friction", "density"], columns };
+  }
+
   draw() {
     if (!this.found || !this.canvas.clientWidth) return;
     const f = this.found.frame;
-    this.axes = new Axes(this.canvas, this.height, [f.left, f.right, f.low, f.high], [`${this.units.velocity} (${this.units.speed})`, `${this.units.friction} (${this.units.force})`]);
+    const across = this.axis === "position" ? `position (${this.units.place})` : `${this.units.velocity} (${this.units.speed})`;
+    this.axes = new Axes(this.canvas, this.height, [f.left, f.right, f.low, f.high], [across, `${this.units.friction} (${this.units.force})`]);
     for (const small of this.layers.filter(Boolean)) this.axes.picture(small);
+    this.rings();
     if (!this.box) return;
     const [a, b, c, d] = this.box, { ctx } = this.axes;
     ctx.strokeStyle = colour("selected"); ctx.lineWidth = 2;

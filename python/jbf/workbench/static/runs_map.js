@@ -25,6 +25,13 @@ export class RunsMap {
     this.draw();
   }
 
+  table() {
+    if (!this.found) return null;
+    const { runs, edges_m_s: edges, mean_n: means } = this.found, columns = [[], [], [], []];
+    means.forEach((row, i) => row.forEach((value, k) => { [runs[i], edges[k], edges[k + 1], value].forEach((v, c) => columns[c].push(v)); }));
+    return { names: ["run", "speed from", "speed to", "mean residual"], columns };
+  }
+
   // Cells that hold samples of the selection: pairs of row and column.
   select(cells) { this.cells = cells; if (this.found) this.draw(); }
 

@@ -1,36 +1,53 @@
 // Section 2: measured and modelled in time and in the plane, over speed and over all runs; where it fails.
 import { get, post } from "./api.js";
-import { Chart, curve } from "./chart.js";
+import { AnyChannel } from "./any_channel.js";
+import { Chart, curve, hollow } from "./chart.js";
 import { h, key, number, put } from "./dom.js";
 import { Plane } from "./plane.js";
+import { plotHead } from "./plot_tools.js";
+import { showRegimes } from "./regimes.js";
 import { RunsMap } from "./runs_map.js";
+import { TINTS } from "./side.js";
 import { Stribeck } from "./stribeck.js";
 
 export class SeeSection {
   constructor(page, place) {
-    this.page = page; this.drag = "brush"; this.all = false; this.ends = ["", ""];
-    this.words = h("p", { class: "verdict" }); this.status = h("p", { class: "said", role: "status" });
-    this.head = h("div", { class: "row" }); this.fails = h("div"); this.which = h("div", { class: "row" });
-    const force = h("div", { class: "plot" }), rest = h("div", { class: "plot" }), plane = h("div"), map = h("div"), speeds = h("div");
-    this.residual = h("div", {}, h("h3", {}, "Record minus model"), rest);
-    place.append(this.words, this.head, this.status,
-      h("div", { class: "two" }, h("section", {}, h("h2", {}, "In time"), force, this.residual),
-        h("section", {}, h("div", { class: "row tight" }, h("h2", {}, "Friction against speed"), this.which), plane)),
-      h("div", { class: "two" }, h("section", {}, h("h2", {}, "Lack of fit, largest first"), this.fails),
-        h("section", {}, h("h2", {}, "Stribeck curve, means of all runs"), speeds)),
-      h("section", {}, h("h2", {}, "Record minus model, by run and speed"), map));
+    this.page = page; this.drag = "brush"; this.all = false; this.axis = "speed"; this.ends = ["", ""];
+    this.status = h("p", { class: "said", role: "status" });
+    this.head = h("div", { class: "row" }); this.fails = h("div"); this.regimes = h("div"); this.which = h("div", { class: "row" });
+    const force = h("div", { class: "plot" }), rest = h("div", { class: "plot" }), plane = h("div"), map = h("div"), speeds = h("div"), any = h("div");
+    const drawn = (name) => ({ canvas: () => this[name].canvas(), table: () => this[name].table() });
+    const own = (name) => ({ canvas: () => this[name].canvas, table: () => this[name].table() });
+    this.residual = h("div", {}, plotHead("h3", "Record minus model", "residual", drawn("rest")), rest);
+    place.append(this.head, this.status,
+      h("div", { class: "two" }, h("section", {}, plotHead("h2", "In time", "force", drawn("force")), force, this.residual),
+        h("section", {}, plotHead("h2", "Friction against speed or position", "plane", own("plane")), this.which, plane)),
+      h("div", { class: "two" }, h("section", {}, h("h2", {}, "Lack of fit, largest first"), this.fails, this.regimes),
+        h("section", {}, plotHead("h2", "Stribeck curve, means of all runs", "stribeck", own("speeds")), speeds)),
+      h("section", {}, plotHead("h2", "Record minus model, by run and speed", "runs_by_speed", own("map")), map), any);
     const { units } = page;
     const brushed = (from, to) => this.select({ run: page.run, from_s: from, to_s: to });
     const zoomed = (from, to) => page.look({ span: [from, to] });
     const common = { brushed, zoomed, mode: () => this.drag, sync: "see" };
-    this.force = new Chart(force, { ...common, unit: `${units.noun} (${units.force})`, height: 200, curves: [
-      curve("friction_n", "measured", "measured"), curve("model_n", "model", "model", { width: 1.6 }),
-      curve("compared_n", "other model", "beside", { dash: [6, 4], width: 1.4 })] });
-    this.rest = new Chart(rest, { ...common, unit: units.force, height: 140, legend: false, curves: [
-      curve("compared_residual_n", "other model", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
-    this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box }), height: 360 });
+    this.force = new Chart(force, { ...common, unit: `${units.noun} (${units.force})`, height: 220, curves: this.forceCurves() });
+    this.rest = new Chart(rest, { ...common, unit: units.force, height: 140, legend: false, curves: this.residualCurves() });
+    this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box, axis: this.axis }), height: 360 });
     this.speeds = new Stribeck(speeds, { brushed: (box) => this.select(box && { box }) });
     this.map = new RunsMap(map, (run, box) => page.look({ run, span: [null, null], ...(box ? { selection: { run, box } } : {}) }));
+    this.any = new AnyChannel(page, any);
+  }
+
+  named(id) { const node = this.page.state.nodes.find((n) => n.id === id); return node ? node.name || node.words : ""; }
+
+  forceCurves() {
+    const { current, compared } = this.page.state;
+    return [curve("friction_n", "measured", "measured"),
+      ...(current === null ? [] : [hollow("unused_n", "measured, not used by the fit", "measured"), curve("model_n", "model", "model", { width: 1.6 })]),
+      ...compared.map((id, i) => curve(`model_${id}`, this.named(id), TINTS[i], { dash: [6, 4], width: 1.4 }))];
+  }
+
+  residualCurves() {
+    return [...this.page.state.compared.map((id, i) => curve(`residual_${id}`, this.named(id), TINTS[i], { width: 0.8 })), curve("residual_n", "record minus model", "measured")];
   }
 
   update(before) {
@@ -41,15 +58,12 @@ export class SeeSection {
 
   looked(changes) {
     const { page } = this;
-    if (!page.run) { put(this.words, "No run is open."); return; }
+    if (!page.run) { put(this.status, "No run is open."); return; }
     this.heading(); this.failures(); this.draw(changes);
   }
 
   heading() {
-    const { page } = this, node = page.model, unit = page.units.force;
-    put(this.words, node
-      ? `${node.words}: RMS ${number(node.rms)} ${unit} (noise ${number(node.noise_rms)} ${unit}${node.held_out_rms ? `, held out ${number(node.held_out_rms)} ${unit}` : ""}).`
-      : "Data only: no model yet.");
+    const { page } = this, node = page.model;
     this.residual.style.display = node ? "" : "none";
     const way = (mode, words) => h("label", {}, h("input", { type: "radio", name: "drag", checked: this.drag === mode, "data-key": `drag-${mode}`,
       onchange: () => { this.drag = mode; } }), ` ${words} `);
@@ -64,7 +78,10 @@ export class SeeSection {
       h("button", { "data-key": "no-selection", disabled: !page.selection, onclick: () => this.select(null) }, "Clear selection"));
     const runs = (all, words) => h("label", {}, h("input", { type: "radio", name: "plane", checked: this.all === all, "data-key": all ? "all-runs" : "this-run",
       onchange: () => { this.all = all; this.looked({}); } }), ` ${words} `);
-    put(this.which, runs(false, "this run"), runs(true, "all runs"), key("measured", "measured"), node ? key("model", "model") : null);
+    const across = h("select", { "aria-label": "horizontal axis", "data-key": "axis", onchange: (e) => { this.axis = e.target.value; this.select(null); this.looked({}); } },
+      [["speed", page.units.velocity], ["position", "position"]].map(([v, words]) => h("option", { value: v, selected: v === this.axis }, words)));
+    put(this.which, h("label", {}, "over ", across), runs(false, "this run"), runs(true, "all runs"), key("measured", "measured"),
+      node ? [key("model", "model"), key("hollow", "not used by the fit (reversals, rests, start)")] : null);
   }
 
   select(selection) { this.page.look({ selection }); }
@@ -94,29 +111,34 @@ export class SeeSection {
   // What is drawn already is not asked for again: of a new selection only where it lies.
   async draw(changes = {}) {
     const { page } = this, model = page.state.current;
-    const ask = Symbol(); this.ask = ask;
-    const plane = { model, runs: this.all ? page.state.runs.map((r) => r.name) : [page.run], columns: 400, rows: 300 };
+    const ask = Symbol(); this.latest = ask;
+    const plane = { model, runs: this.all ? page.state.runs.map((r) => r.name) : [page.run], columns: 400, rows: 300, axis: this.axis };
     const stays = Object.keys(changes).length === 1 && "selection" in changes;
-    try {
-      const [found, brushed] = await Promise.all([
-        stays ? null : Promise.all([
-          get("series", { run: page.run, model, from_s: page.span[0], to_s: page.span[1], pixels: 1000 }), post("plane", plane)]),
-        page.selection ? post("brush", { ...plane, selection: page.selection }) : null,
-      ]);
-      if (this.ask !== ask) return;
-      if (found) {
-        const [series, density] = found;
-        this.force.show(series); this.rest.show(series); this.plane.show(density, page.units); this.speeds.show(page.model, page.units);
-      }
-      this.plane.select(brushed?.selected); this.speeds.select(brushed?.speeds_m_s); this.map.select(brushed?.cells ?? []);
-      for (const chart of [this.force, this.rest]) chart.mark([], brushed?.by_run[page.run]?.stretches_s ?? []);
-      this.say(brushed); page.selected(brushed);
-      document.body.dataset.drawn = `${page.run} ${model ?? ""}`;
-      document.body.dataset.draws = String(++page.draws);
-      if (stays) return;
-      if (model !== null && page.model?.records) this.map.show(await get("map", { model }), page.units, page.run, page.model.noise_rms);
-      else this.map.clear();
-    } catch (error) { page.say(error.message); }
+    const answers = await page.ask(() => Promise.all([
+      stays ? null : Promise.all([
+        get("series", { run: page.run, model, from_s: page.span[0], to_s: page.span[1], pixels: 1000 }), post("plane", plane),
+        model !== null && page.model?.records ? get("map", { model }) : null]),
+      page.selection ? post("brush", { ...plane, selection: page.selection }) : null,
+    ]));
+    if (this.latest !== ask || !answers) return;
+    const [found, brushed] = answers;
+    if (found) this.show(...found);
+    this.plane.select(brushed?.selected); this.speeds.select(brushed?.speeds_m_s); this.map.select(brushed?.cells ?? []);
+    for (const chart of [this.force, this.rest]) chart.mark([], brushed?.by_run[page.run]?.stretches_s ?? []);
+    this.say(brushed); page.selected(brushed);
+    document.body.dataset.drawn = `${page.run} ${model ?? ""}`;
+    document.body.dataset.draws = String(++page.draws);
+    if (!stays) this.any.draw();
+  }
+
+  show(series, density, map) {
+    const { page } = this;
+    for (const other of series.others) { series[`model_${other.model}`] = other.model_n; series[`residual_${other.model}`] = other.residual_n; }
+    this.force.use(this.forceCurves()); this.rest.use(this.residualCurves());
+    this.force.show(series); this.rest.show(series);
+    this.plane.show(density, page.units, this.axis); this.speeds.show(page.model, page.units);
+    if (map) this.map.show(map, page.units, page.run, page.model.noise_rms); else this.map.clear();
+    showRegimes(page, this.regimes);
   }
 
   say(brushed) {

@@ -1,13 +1,15 @@
 // The side: runs with what their recordings did, and the tree of models.
-import { h, number, put } from "./dom.js";
+import { h, key, number, put, times } from "./dom.js";
+
+export const TINTS = ["beside", "third", "fourth"];
 
 export function showRuns(page, place) {
   const { runs } = page.state;
-  put(place, runs.length === 0 ? h("p", { class: "faint" }, "None yet.") : runs.map((run) =>
+  put(place, runs.map((run) =>
     h("div", { class: `item${run.name === page.run ? " now" : ""}` },
       h("input", { type: "checkbox", checked: !run.excluded, "aria-label": `use ${run.name} in fits`, title: "use it in fits", "data-key": `use-${run.name}`,
         onchange: (event) => page.do("leave_out", { run: run.name, out: !event.target.checked }) }),
-      h("button", { "data-key": `run-${run.name}`, "aria-pressed": String(run.name === page.run), onclick: () => page.look({ run: run.name, span: [null, null] }) },
+      h("button", { class: "pick", "data-key": `run-${run.name}`, "aria-pressed": String(run.name === page.run), onclick: () => page.look({ run: run.name, span: [null, null] }) },
         run.name, h("br"), h("small", {}, runNote(page, run))))));
 }
 
@@ -31,14 +33,15 @@ export function showModels(page, place) {
   const walk = (parent, depth) => {
     for (const node of nodes.filter((n) => n.parent === parent)) {
       const outside = node.held_out_rms === null || node.held_out_rms === undefined ? "" : `; held out ${number(node.held_out_rms)}`;
-      const item = h("div", { class: `item${node.id === current ? " now" : ""}${node.id === compared ? " beside" : ""}` },
-        h("button", { "data-key": `model-${node.id}`, "aria-pressed": String(node.id === current), onclick: () => page.do("show", { model: node.id }) },
-          node.words, h("br"), h("small", {}, `${number(node.rms)} ${page.units.force}${outside}`)),
+      const at = compared.indexOf(node.id), ratio = node.banner.times_noise;
+      const item = h("div", { class: `item${node.id === current ? " now" : ""}` },
+        h("button", { class: "pick", "data-key": `model-${node.id}`, "aria-pressed": String(node.id === current), title: node.note ?? "", onclick: () => page.do("show", { model: node.id }) },
+          node.name || node.words, ratio === null ? null : ` (${times(ratio)})`, h("br"), h("small", {}, `${number(node.rms)} ${page.units.force}${outside}`)),
         h("label", { title: "draw together with the current model" },
-          h("input", { type: "checkbox", checked: node.id === compared, disabled: node.id === current, "data-key": `beside-${node.id}`,
-            "aria-label": `compare with ${node.words}`,
-            onchange: (event) => page.do("compare_with", { model: event.target.checked ? node.id : null }) }),
-          h("small", {}, "compare")));
+          h("input", { type: "checkbox", checked: at >= 0, disabled: node.id === current || (at < 0 && compared.length >= TINTS.length), "data-key": `beside-${node.id}`,
+            "aria-label": `compare with ${node.name || node.words}`,
+            onchange: (event) => page.do("compare_with", { model: node.id, on: event.target.checked }) }),
+          h("small", {}, at >= 0 ? key(TINTS[at], "compare") : "compare")));
       item.style.marginLeft = `${12 * Math.min(depth, 5)}px`;
       rows.push(item);
       walk(node.id, depth + 1);
@@ -47,5 +50,6 @@ export function showModels(page, place) {
   walk(null, 0);
   put(place, h("div", { class: "row" },
     h("button", { "data-key": "undo", disabled: current === null, title: "return to the parent model (key z)", onclick: () => page.do("undo") }, "Undo"),
+    h("button", { "data-key": "redo", disabled: !page.state.can_redo, title: "return to the model that was undone (key y)", onclick: () => page.do("redo") }, "Redo"),
     h("button", { "data-key": "records", disabled: current === null, onclick: () => page.do("show", { model: null }) }, "Data only")), rows);
 }

@@ -26,6 +26,11 @@ export class Stribeck {
     this.draw();
   }
 
+  table() {
+    const ways = this.node?.stribeck?.ways ?? [], all = (name) => ways.flatMap((way) => way[name]);
+    return { names: ["speed", "measured", "standard deviation", "model"], columns: [all("speed_m_s"), all("measured_n"), all("scatter_n"), all("modelled_n")] };
+  }
+
   select(speeds) { this.speeds = speeds; this.draw(); }
 
   draw() {

@@ -1,0 +1,32 @@
+// The verdict in one number and one sentence, and the next step with the button that does it.
+import { h, put, times } from "./dom.js";
+
+const MARKS = { good: "✓", warn: "?", bad: "!" };
+
+export function showBanner(page, place) {
+  const { state } = page, node = page.model;
+  if (!state.runs.length || page.importing) { delete place.dataset.kind; put(place); return; }
+  const step = nextStep(page), number = node?.banner.times_noise ?? null;
+  place.dataset.kind = node?.banner.kind ?? "none";
+  put(place,
+    number === null ? null : h("div", { class: "number", "data-key": "times-noise" }, `${MARKS[node.banner.kind]} ${times(number)}`, h("small", {}, "the noise")),
+    h("div", { class: "words" }, h("b", {}, node ? node.banner.words : "No model yet: is something missing in the friction of these runs?"),
+      step ? h("p", {}, `Next: ${step.words}`) : null),
+    step?.buttons ? h("div", { class: "row tight" }, step.buttons.map(([key, words, act]) =>
+      h("button", { class: "main", "data-key": `next-${key}`, onclick: act }, words))) : null);
+}
+
+function nextStep(page) {
+  const { state } = page, node = page.model, here = page.name;
+  const go = (name, words) => [name.toLowerCase(), words, () => page.enter(name)];
+  const diagnose = ["diagnose", "Diagnose", () => page.do("diagnose", { parent: node?.id ?? null })];
+  if (state.job?.words.startsWith("comparing")) return { words: "wait until the model is compared with the runs." };
+  if (state.job) return { words: node ? "the candidates are being tested; you can continue." : "the fit is running; Cancel keeps the best model so far." };
+  if (!node) return { words: "diagnose automatically, or fit a law and add effects in 3 Model.", buttons: [diagnose, ...(here === "Model" ? [] : [go("Model", "3 Model")])] };
+  const best = (node.trials ?? []).find((t) => t.outcome === "added");
+  const explore = here === "Explore" ? [] : [go("Explore", "2 Explore")];
+  if (!node.diagnosis && best) return { words: `add ${best.effect}, which explains most of the residual.`,
+    buttons: [["add", `Add ${best.effect}`, () => { page.enter("Model"); page.do("fit", { effects: [...node.effects, best.effect], parent: node.id }); }], ...explore] };
+  if (!node.diagnosis && node.banner.kind !== "good") return { words: "see where the model fails, or diagnose automatically.", buttons: [diagnose, ...explore] };
+  return { words: "see where the model fails, or export it.", buttons: [...explore, ...(here === "Export" ? [] : [go("Export", "4 Export")])] };
+}

@@ -6,10 +6,8 @@ cell is located, so that the error names row and column. A valid file is read in
 
 from __future__ import annotations
 
-import csv
-import io
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,11 +29,12 @@ from jbf.records.checks import (
     listed,
 )
 from jbf.records.counts import count_of
+from jbf.records.csv_table import HEADER_EXAMPLE, lines_of, plain_columns, read_table
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
-from jbf.text_files import name_of, path_of, read_text
+from jbf.text_files import name_of, path_of
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -56,7 +55,6 @@ DRIVE_COLUMNS = (
     "motor_speed_rpm",
 )
 """Columns that can be interpreted only with a rig that has a drive."""
-_HEADER_EXAMPLE = "time_s,velocity_m_s,friction_n"
 _ALIASES = {
     "t": "time_s",
     "seconds": "time_s",
@@ -106,7 +104,7 @@ def _checked_header(
         raise wrong(
             None,
             "has numbers where the header should be",
-            f"put a line with the column names first, without #: {_HEADER_EXAMPLE}",
+            f"put a line with the column names first, without #: {HEADER_EXAMPLE}",
         )
     if len(header) == 1 and len(header[0].split()) > 1:
         raise wrong(None, "the names are separated by blanks", "separate the cells with commas")
@@ -160,45 +158,6 @@ def _bad_cell(path: Path, row: int, column: str, cell: str) -> InputError:
     return InputError(file=path, row=row, column=column, problem=problem, remedy=remedy)
 
 
-def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]:
-    """Return the header, its line, the rows of cells, and the line of each row.
-
-    Blank lines are skipped.
-    """
-    # Universal newlines only; str.splitlines would also split at other characters.
-    lines = list(io.StringIO(read_text(path), newline=None))
-    first = 0
-    while first < len(lines) and (
-        not lines[first].strip() or lines[first].lstrip().startswith("#")
-    ):
-        first += 1
-    if first == len(lines):
-        raise InputError(
-            file=path, problem="is empty", remedy=f"start with a header such as {_HEADER_EXAMPLE}"
-        )
-    reader = csv.reader(lines[first:], delimiter=max(",;\t", key=lines[first].count))
-    records: list[list[str]] = []
-    numbers: list[int] = []
-    line = first
-
-    def wrong(row: int, problem: str) -> InputError:
-        remedy = "correct the row; one line is one row"
-        return InputError(file=path, row=row, problem=problem, remedy=remedy)
-
-    try:
-        for cells in reader:
-            line += 1
-            if first + reader.line_num > line:
-                raise wrong(line, "a quotation mark is not closed")
-            if cells:
-                records.append(cells)
-                numbers.append(line)
-    except csv.Error as error:
-        raise wrong(line + 1, str(error)) from None
-    header = [name.strip() for name in records[0]]
-    return header, numbers[0], records[1:], numbers[1:]
-
-
 def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = True) -> Run:
     """Read one run from CSV.
 
@@ -240,11 +199,19 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     """
     path = path_of(path)
     name_of_run = name_of(path)
-    header, header_row, rows, numbers = _read_table(path)
+    lines, first, delimiter = lines_of(path)
+    plain = plain_columns(lines, first, delimiter)
+    rows: list[list[str]] = []
+    numbers: Sequence[int] = range(first + 2, len(lines) + 1)
+    if plain is None:
+        (names, *rows), (_, *numbers) = read_table(path, lines, first, delimiter)
+    else:
+        names = lines[first].split(delimiter)
+    header = [name.strip() for name in names]
     drive = None if rig is None else the_rig(rig).drive
     of_drive = None if drive is None else DriveColumns.of(drive)
     if of_drive is not None:
-        of_drive.refuse_foreign_columns(path, header_row, header)
+        of_drive.refuse_foreign_columns(path, first + 1, header)
         required = of_drive.required(header, need_friction)
     else:
         required = _required(header, need_friction)
@@ -252,7 +219,38 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     steady = POINT in header and "time_s" not in header
     if steady:
         required = [POINT if name == "time_s" else name for name in required]
-    _checked_header(path, header_row, header, required, of_drive)
+    _checked_header(path, first + 1, header, required, of_drive)
+    columns: dict[str, Array] = {}
+    gaps: dict[str, Mask] = {}
+    if plain is None:
+        columns, gaps = _converted(path, header, rows, numbers, known_columns)
+    else:
+        columns = {name: frozen(v) for name, v in zip(header, plain, strict=True) if name}
+    if steady and POINT in columns:
+        speeds = ("velocity_m_s",) if of_drive is None else tuple(of_drive.speed)
+        columns = _by_speed(columns, next((s for s in speeds if s in columns), POINT))
+    check_columns(name_of_run, columns, path, numbers, known_columns)
+    for name, sampled in gaps.items():
+        columns[name] = filled(columns["time_s"], columns[name], sampled)
+    if of_drive is None:
+        return replace(Run.of_columns(name_of_run, columns, path), read=gaps)
+    called = of_drive.called(columns)
+    columns, findings = of_drive.converted(name_of_run, columns)
+    run = Run.of_columns(name_of_run, columns, path)
+    findings = (*findings, *run.reading)
+    read = {called.get(name, name): sampled for name, sampled in gaps.items()}
+    read = {name: sampled for name, sampled in read.items() if name in columns}
+    return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)
+
+
+def _converted(
+    path: Path,
+    header: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    numbers: Sequence[int],
+    known_columns: Collection[str],
+) -> tuple[dict[str, Array], dict[str, Mask]]:
+    """Convert cells to columns of numbers, and find the gaps of channels with separate clocks."""
     if not rows:
         raise InputError(file=path, problem="has a header but no samples", remedy="add the samples")
     if set(map(len, rows)) != {len(header)}:
@@ -283,21 +281,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
             continue
         if name in known_columns or (name and np.isfinite(values).all()):
             columns[name] = values
-    if steady and POINT in columns:
-        speeds = ("velocity_m_s",) if of_drive is None else tuple(of_drive.speed)
-        columns = _by_speed(columns, next((s for s in speeds if s in columns), POINT))
-    check_columns(name_of_run, columns, path, numbers, known_columns)
-    for name, sampled in gaps.items():
-        columns[name] = filled(columns["time_s"], columns[name], sampled)
-    if of_drive is None:
-        return replace(Run.of_columns(name_of_run, columns, path), read=gaps)
-    called = of_drive.called(columns)
-    columns, findings = of_drive.converted(name_of_run, columns)
-    run = Run.of_columns(name_of_run, columns, path)
-    findings = (*findings, *run.reading)
-    read = {called.get(name, name): sampled for name, sampled in gaps.items()}
-    read = {name: sampled for name, sampled in read.items() if name in columns}
-    return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)
+    return columns, gaps
 
 
 def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:

@@ -193,3 +193,22 @@ def test_csv_temperature_column_is_accepted_if_empty_or_with_gaps(write: Write) 
     run = read_run(write("time_s,velocity_m_s,friction_n,temperature_c", *rows))
     np.testing.assert_array_equal(run.temperature_c, 21.5)
     assert [finding.kind for finding in run.reading] == ["gaps"]
+
+
+def test_irregular_file_has_the_same_bits_as_a_regular_one(tmp_path: Path) -> None:
+    random = np.random.default_rng(3)
+    t = np.arange(0.0, 4.0, 0.02)
+    rows = np.column_stack([t, random.normal(size=len(t)), 1e9 * random.normal(size=len(t))])
+    lines = [",".join(map(repr, row)) for row in rows.tolist()]
+    header = "time_s,velocity_m_s,friction_n"
+    (tmp_path / "regular.csv").write_text("\n".join([header, *lines, ""]))
+    # A blank line and quotation marks are allowed, but not regular.
+    first, _, rest = lines[7].partition(",")
+    lines[7:8] = ["", f'"{first}",{rest}']
+    (tmp_path / "irregular.csv").write_text("\n".join([header, *lines, ""]))
+    regular, irregular = (
+        read_run(tmp_path / f"{name}.csv").columns() for name in ("regular", "irregular")
+    )
+    assert list(regular) == list(irregular)
+    for name, values in regular.items():
+        assert np.array_equal(values, irregular[name]), name

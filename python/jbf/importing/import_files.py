@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,6 +15,7 @@ from jbf.importing.cutting.cut import cut
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.cutting.trims import trimmed
 from jbf.importing.formats.registry import format_of
+from jbf.importing.formats.table import Options, Source
 from jbf.importing.guess import guess
 from jbf.importing.guess_align import with_alignment
 from jbf.importing.guess_rig import assumed_machine
@@ -33,6 +35,7 @@ from jbf.records.run import PathLike, Run
 from jbf.text_files import check_readable, path_of, read_text
 
 Report = Callable[[str, int, int], None]
+Opener = Callable[[Path, Sequence[PathLike], Options], Source]
 
 
 def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = ()) -> Guess:
@@ -134,6 +137,63 @@ def import_files(
     if joint is not None and map is not None:
         remedy = "omit one of them: the map names the columns"
         raise InputError(problem="both a joint and a map are given", remedy=remedy)
+    parent = None if folder is None else folder.resolve().parent
+    with read_files(
+        paths, map, cut_file=cut_file, whole=whole, joint=joint, beside=beside,
+        progress=progress, parent=parent,
+    ) as read:  # fmt: skip
+        return write_import(read, folder, progress)
+
+
+@dataclass(frozen=True)
+class ReadFiles:
+    """Recordings read through a map and cut into pieces, in temporary files.
+
+    Attributes
+    ----------
+    mapping, text
+        The map, and its text.
+    rig
+        Rig of the recordings.
+    recordings, pieces
+        The recordings, and their pieces, including those that are left out.
+    """
+
+    mapping: Map
+    text: str
+    rig: Rig
+    recordings: list[Recording]
+    pieces: list[Piece]
+
+
+@contextmanager
+def read_files(
+    files: Sequence[PathLike],
+    map: PathLike | Map | None = None,
+    *,
+    cut_file: PathLike | None = None,
+    whole: bool = False,
+    joint: str | None = None,
+    beside: Sequence[PathLike] | None = None,
+    progress: Report | None = None,
+    parent: Path | None = None,
+    opener: Opener = open_recording,
+) -> Iterator[ReadFiles]:
+    """Read and cut recordings as `import_files` does, without writing runs.
+
+    Parameters
+    ----------
+    parent
+        Folder in which the temporary files are created; by default that of the system.
+    opener
+        Function that opens a recording; the default reads it from its file.
+
+    Raises
+    ------
+    InputError
+        As `import_files`.
+    """
+    paths = _paths(files)
     mapping, text = _map(map, paths, joint, _readable_paths(beside or ()))
     if beside is not None:
         mapping = replace(mapping, beside=_readable_paths(beside))
@@ -144,10 +204,9 @@ def import_files(
         mapping = replace(mapping, cut=replace(mapping.cut, file=path_of(cut_file)))
     if whole and mapping.cut.by is None:
         mapping = replace(mapping, cut=replace(mapping.cut, by=()))
-    parent = None if folder is None else folder.resolve().parent
     with TemporaryDirectory(prefix=".jbf-import-", dir=parent) as spool:
         recordings = [
-            _read(path, mapping, Path(spool) / str(number), progress)
+            _read(path, mapping, Path(spool) / str(number), progress, opener)
             for number, path in enumerate(paths)
         ]
         machine = assumed_machine(mapping.rig) if map is None else None
@@ -157,14 +216,26 @@ def import_files(
         for recording in recordings:
             run_pieces = [p for p in pieces if p.keep and p.file == recording.path.name]
             check_loads(recording, run_pieces, mapping)
-        ledger = ledger_of(recordings, pieces, mapping)
-        pictures = tuple(overview(recording) for recording in recordings)
-        temporary = None
-        if folder is None:
-            temporary = TemporaryDirectory(prefix="jbf-import-")
-            folder = Path(temporary.name) / "campaign"
-        write_campaign(folder, rig, recordings, pieces, mapping, text, ledger, progress)
-    return Import(folder, rig, tuple(pieces), ledger, pictures, temporary)
+        yield ReadFiles(mapping, text, rig, recordings, pieces)
+
+
+def write_import(
+    read: ReadFiles, folder: Path | None = None, progress: Report | None = None
+) -> Import:
+    """Write the runs, the rig and the ledger of recordings that were read.
+
+    Without a folder the campaign is temporary, and deleted with the result.
+    """
+    ledger = ledger_of(read.recordings, read.pieces, read.mapping)
+    pictures = tuple(overview(recording) for recording in read.recordings)
+    temporary = None
+    if folder is None:
+        temporary = TemporaryDirectory(prefix="jbf-import-")
+        folder = Path(temporary.name) / "campaign"
+    write_campaign(
+        folder, read.rig, read.recordings, read.pieces, read.mapping, read.text, ledger, progress
+    )
+    return Import(folder, read.rig, tuple(read.pieces), ledger, pictures, temporary)
 
 
 def read_recording(
@@ -260,10 +331,12 @@ def _map(
     return proposal.map(), map_text(proposal)
 
 
-def _read(path: Path, mapping: Map, folder: Path, progress: Report | None) -> Recording:
+def _read(
+    path: Path, mapping: Map, folder: Path, progress: Report | None, opener: Opener
+) -> Recording:
     """Read one recording through a map into temporary files."""
     folder.mkdir()
-    with open_recording(path, mapping.beside, mapping.options) as source:
+    with opener(path, mapping.beside, mapping.options) as source:
         recording = spooled(source, mapping, folder, progress)
     recording.format = format_of(path).name
     return recording

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import filecmp
-import shutil
 from collections.abc import Callable
-from importlib.resources import as_file, files
-from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -14,16 +10,10 @@ from starlette.responses import Response
 
 from jbf.errors import InputError
 from jbf.workbench import channels as any_channel
-from jbf.workbench import choices, effect_views, importer, saved_files, views
+from jbf.workbench import choices, effect_views, importer, samples, saved_files, views
 from jbf.workbench.session import Session
 
 Parameters = dict[str, Any]
-DEMO_PLACES = ("hidden", "jbf-demo/hidden", "jbf-demo")
-"""Folders that may contain the data of `jbf demo`, relative to the session's folder.
-
-The first two apply if the session's folder is that of the demo or its parent. The page copies the
-data into the last.
-"""
 MOST_PIXELS = 4000
 
 
@@ -51,8 +41,8 @@ def state(session: Session, parameters: Parameters) -> Any:
 
 
 def listing(session: Session, parameters: Parameters) -> Any:
-    """Files of the session's folder by kind."""
-    return session.folder.listing()
+    """Files of the session's folder by kind, and the samples of the package."""
+    return {**session.folder.listing(), "samples": samples.listing()}
 
 
 def series(session: Session, parameters: Parameters) -> Any:
@@ -131,46 +121,41 @@ def open_campaign(session: Session, parameters: Parameters) -> Any:
     return {}
 
 
-def demo(session: Session, parameters: Parameters) -> Any:
-    """Open the demo data in the session, copied into the folder if `jbf demo` has not done it."""
-    with as_file(files("jbf") / "data" / "demo" / "hidden") as shipped:
-        shipped_copies = [
-            name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)
-        ]
-        where = shipped_copies[0] if shipped_copies else DEMO_PLACES[-1]
-        if not shipped_copies:
-            shutil.copytree(shipped, session.folder.root / where, dirs_exist_ok=True)
-    runs = sorted(path.name for path in (session.folder.root / where).glob("*.csv"))
-    session.open(f"{where}/rig.toml", [f"{where}/{name}" for name in runs])
+def sample(session: Session, parameters: Parameters) -> Any:
+    """Open a simulated sample in the session."""
+    samples.open_sample(session, str(parameters["name"]))
     return {}
-
-
-def _holds(folder: Path, shipped: Path) -> bool:
-    """Whether a folder contains the shipped rig and runs of the demo."""
-    names = ["rig.toml", *(path.name for path in shipped.glob("*.csv"))]
-    _, differ, missing = filecmp.cmpfiles(shipped, folder, names, shallow=False)
-    return not differ and not missing
 
 
 def look(session: Session, parameters: Parameters) -> Any:
     """Proposed map for a file: the assignment of its columns."""
-    return importer.guess_map(session.folder, str(parameters["file"]))
+    joint = parameters.get("joint")
+    chosen = None if joint is None else str(joint)
+    return importer.guess_map(session.folder, str(parameters["file"]), chosen)
 
 
 def try_map(session: Session, parameters: Parameters) -> Any:
     """Runs that a map yields from files, without an import."""
     form = parameters.get("form")
-    trims = None if form is None else dict(form)
-    return importer.try_map(session.folder, _files(parameters), str(parameters["map"]), trims)
+    answers = None if form is None else dict(form)
+    names, text = _files(parameters), str(parameters["map"])
+    with session.readings.begin(f"reading {', '.join(names[:3])}") as reading:
+        return importer.try_map(
+            session.folder, names, text, answers, cache=session.sources, reading=reading
+        )
 
 
 def import_files(session: Session, parameters: Parameters) -> Any:
-    """Import files as runs, and open these in the session."""
-    into = str(parameters["into"])
-    imported = importer.import_runs(
-        session.folder, _files(parameters), str(parameters["map"]), into
-    )
+    """Import files as runs, and open these in the session; start a diagnosis if requested."""
+    into, names = str(parameters["into"]), _files(parameters)
+    with session.readings.begin(f"importing {', '.join(names[:3])}") as reading:
+        imported = importer.import_runs(
+            session.folder, names, str(parameters["map"]), into, cache=session.sources,
+            reading=reading,
+        )  # fmt: skip
     session.open(imported["rig"], imported["files"])
+    if parameters.get("diagnose"):
+        session.begin("diagnose", (), None)
     return imported
 
 
@@ -219,8 +204,8 @@ def _parent(parameters: Parameters) -> int | None:
 
 
 def cancel(session: Session, parameters: Parameters) -> Any:
-    """Cancel the running job."""
-    return {"cancelled": session.jobs.cancel()}
+    """Cancel the running reading or job."""
+    return {"cancelled": session.cancel()}
 
 
 def show(session: Session, parameters: Parameters) -> Any:
@@ -277,7 +262,7 @@ COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "plane": plane,
     "brush": brush,
     "open": open_campaign,
-    "demo": demo,
+    "sample": sample,
     "look": look,
     "try": try_map,
     "import": import_files,

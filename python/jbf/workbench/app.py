@@ -132,7 +132,7 @@ async def _news(session: Session, request: Request) -> AsyncIterator[str]:
     """Yield the state as server-sent events whenever it has changed."""
     sent_version, quiet = -1, 0.0
     while not await request.is_disconnected():
-        running = session.jobs.job is not None
+        running = session.jobs.job is not None or session.readings.job is not None
         # The elapsed time of a running fit changes as well.
         if session.version != sent_version or (running and quiet >= 1.0):
             sent_version, quiet = session.version, 0.0

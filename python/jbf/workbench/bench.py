@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any
@@ -54,7 +54,13 @@ class Bench:
     findings: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
 
     @classmethod
-    def read(cls, folder: Folder, rig_name: str, run_names: Sequence[str]) -> Bench:
+    def read(
+        cls,
+        folder: Folder,
+        rig_name: str,
+        run_names: Sequence[str],
+        progress: Callable[[str, int, int], None] | None = None,
+    ) -> Bench:
         """Read a rig and runs from files of the folder.
 
         Raises
@@ -63,7 +69,10 @@ class Bench:
             A name is not in the folder, or a file is wrong.
         """
         rig = read_rig(folder.path(rig_name))
-        runs = read_runs([folder.path(name) for name in run_names], rig, need_friction=False)
+        paths = [folder.path(name) for name in run_names]
+        runs = read_runs(paths, rig, need_friction=False)
+        if progress is not None:
+            progress("read", len(runs), len(runs))
         imported = _imported(folder, PurePosixPath(rig_name).parent)
         return cls(rig_name, tuple(run_names), rig, tuple(runs), imported=imported)
 

@@ -20,6 +20,7 @@ from jbf.errors import InputError
 from jbf.importing.columns import split_unit
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.registry import open_source
+from jbf.importing.formats.table import Values
 from jbf.importing.guess_rig import guess_rig
 from jbf.importing.mapping import Map, read_map
 from jbf.importing.targets import KNOWN, wanted_unit
@@ -27,7 +28,9 @@ from jbf.units.unit import parse_unit
 
 FIRST = 3
 """Number of first values of a column that the form shows."""
-_PLAIN = re.compile(r"\s*(?P<sign>-?)\s*`(?P<column>[^`]+)`\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
+HEAD, SHAPE = 5_000, 120
+"""Number of rows whose course the form shows, and of the points of its curve."""
+PLAIN = re.compile(r"\s*(?P<sign>-?)\s*`(?P<column>[^`]+)`\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
 _ANSWERED = re.compile(r"^# Open:\n(?:#   .*\n)+\n?", re.MULTILINE)
 """Comments with open questions in a guessed map; removed because the form shows them."""
 _LINE = re.compile(r"\w+\s*=")
@@ -54,33 +57,53 @@ WORDS = {
 }
 """Plain description of each possible column of a run."""
 SUGGESTED = (
-    "s", "ms", "us", "min", "m", "cm", "mm", "um", "in", "rad", "deg", "rev", "m/s", "mm/s", "um/s",
-    "m/min", "mm/min", "rad/s", "deg/s", "rpm", "N", "mN", "kN", "lbf", "N m", "mN m", "N cm", "A",
-    "mA", "%", "Pa", "kPa", "MPa", "bar", "mbar", "psi", "°C", "K",
+    "s", "ms", "us", "ns", "min", "m", "cm", "mm", "um", "in", "rad", "deg", "rev", "m/s", "mm/s",
+    "um/s", "m/min", "mm/min", "rad/s", "deg/s", "rpm", "N", "mN", "kN", "lbf", "N m", "mN m",
+    "N cm", "A", "mA", "%", "Pa", "kPa", "MPa", "bar", "mbar", "psi", "°C", "K",
 )  # fmt: skip
 """Units offered in the form; any other unit may be entered."""
 
 
 def file_columns(path: Path) -> list[dict[str, Any]]:
-    """Name, unit and first values of each column of a file, as in the file."""
+    """Name, unit, kind, first values and shape of each column of a file, as in the file.
+
+    The shape is the course of the first rows, scaled to 0 to 1; None for a column of words.
+    """
     columns = []
     with open_source(path) as source:
         for table in source.tables:
-            head = source.head(table, FIRST)
+            head = source.head(table, HEAD)
             for column in table.columns:
-                values = head.get(column.name, np.empty(0))[:FIRST]
+                values = head.get(column.name, np.empty(0))
                 columns.append(
                     {
                         "name": column.name,
                         "unit": column.unit or split_unit(column.name)[1],
-                        "first": [_shown(value) for value in values],
+                        "kind": column.kind,
+                        "first": [_shown(value) for value in values[:FIRST]],
+                        "shape": _shape(values),
                     }
                 )
     return columns
 
 
+def _shape(values: Values) -> list[float | None] | None:
+    """Course of the values in at most `SHAPE` points, scaled to 0 to 1; None for words."""
+    if values.dtype.kind not in "fiu" or not len(values):
+        return None
+    numbers = values[:: max(len(values) // SHAPE, 1)].astype(np.float64)
+    finite = numbers[np.isfinite(numbers)]
+    if not len(finite):
+        return None
+    low, size = finite.min(), float(np.ptp(finite)) or 1.0
+    return [round(float(v), 3) if np.isfinite(v) else None for v in (numbers - low) / size]
+
+
 def _shown(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
+    if isinstance(value, float | np.floating):
+        # Stamps, such as seconds since 1970, differ only in their last digits.
+        return f"{value:.6g}" if abs(value) < 1e6 else f"{value:.16g}"
+    return str(value)
 
 
 def quantities() -> list[dict[str, Any]]:
@@ -103,10 +126,10 @@ def form_of(text: str) -> dict[str, Any]:
     InputError
         The text is not a map.
     """
-    mapping = _map_of(text)
+    mapping = map_of(text)
     rows = []
     for key, expression in mapping.columns.items():
-        match = _PLAIN.fullmatch(expression)
+        match = PLAIN.fullmatch(expression)
         row: dict[str, Any] = {"key": key, "expression": expression}
         if match is not None:
             row |= {
@@ -118,7 +141,9 @@ def form_of(text: str) -> dict[str, Any]:
     return {"rows": rows, "rig": {name: dict(part) for name, part in mapping.rig.items()}}
 
 
-def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
+def rewritten(
+    text: str, columns: Mapping[str, str], rig: Mapping[str, Any], rate_hz: float | None = None
+) -> str:
     """Replace columns and rig values in the text of a map.
 
     If the columns imply a different machine, its sections are guessed again; values already filled
@@ -132,13 +157,15 @@ def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> 
         Column of a run to its expression.
     rig
         Values by dotted name, such as `drive.pitch_m`.
+    rate_hz
+        Sampling rate of a file without times, Hz.
 
     Raises
     ------
     InputError
         The text is not a map.
     """
-    before = _map_of(text)
+    before = map_of(text)
     document: Any = _parsed(_ANSWERED.sub("", text))
     _put(document["columns"], {k: v for k, v in columns.items() if k in before.columns})
     sections = _sections(before, columns, rig)
@@ -148,6 +175,8 @@ def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> 
         if name not in document:
             document[name] = tomlkit.table()
         _put(document[name], content)
+    if rate_hz is not None:
+        document.setdefault("file", tomlkit.table())["rate_hz"] = rate_hz
     new = [f"{k} = {_quoted(v)}" for k, v in columns.items() if k not in before.columns]
     return _with_lines(tomlkit.dumps(document), new)
 
@@ -218,7 +247,12 @@ def expression_of(row: Mapping[str, Any]) -> str:
     return f"{'-' if row.get('turned') else ''}`{column}`{f' [{unit}]' if unit else ''}"
 
 
-def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, Any]) -> str:
+def changed_by(
+    text: str,
+    rows: Sequence[Mapping[str, Any]],
+    rig: Mapping[str, Any],
+    rate_hz: float | None = None,
+) -> str:
     """Apply the changes made in a form to the text of its map.
 
     Raises
@@ -236,10 +270,11 @@ def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, A
             raise InputError(
                 problem=f"two columns are assigned to {words}", remedy="keep one of them"
             )
-        columns[key] = expression_of(row)
+        # A formula is replaced as a whole.
+        columns[key] = str(row["expression"]) if "column" not in row else expression_of(row)
     other_formulas = {k: v for k, v in formulas.items() if k not in columns}
     numbers = {place: _number(value) for place, value in rig.items()}
-    return rewritten(text, {**columns, **other_formulas}, numbers)
+    return rewritten(text, {**columns, **other_formulas}, numbers, rate_hz)
 
 
 def _number(value: Any) -> Any:
@@ -257,7 +292,7 @@ def cut_name(text: str) -> str | None:
     InputError
         The text is not a map.
     """
-    if _map_of(text).cut.file is None:
+    if map_of(text).cut.file is None:
         return None
     return str(_parsed(text)["cut"]["file"])
 
@@ -270,7 +305,7 @@ def additional_names(text: str) -> list[str]:
     InputError
         The text is not a map.
     """
-    if not _map_of(text).beside:
+    if not map_of(text).beside:
         return []
     return [str(name) for name in _parsed(text)["file"]["beside"]]
 
@@ -284,7 +319,14 @@ def _parsed(text: str) -> Any:
         ) from None
 
 
-def _map_of(text: str) -> Map:
+def map_of(text: str) -> Map:
+    """Read the text of a map.
+
+    Raises
+    ------
+    InputError
+        The text is not a map.
+    """
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as scratch:
         path = Path(scratch) / "map.toml"
         path.write_text(text, encoding="utf-8")

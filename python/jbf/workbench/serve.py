@@ -47,8 +47,8 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
     try:
         import uvicorn
 
-        from jbf.workbench.actions import demo as open_demo
         from jbf.workbench.app import create_app
+        from jbf.workbench.samples import open_sample
     except ImportError:
         remedy = 'pip install "jbf[workbench]"'
         raise InputError(problem="Starlette or uvicorn is not installed", remedy=remedy) from None
@@ -59,7 +59,7 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
     session = Session(Folder.of(folder))
     try:
         if demo:
-            open_demo(session, {})
+            open_sample(session, "bearing")
         else:
             load(session)
         token = secrets.token_urlsafe(24)

@@ -21,6 +21,8 @@ from jbf.workbench.equivalent_commands import commands, python
 from jbf.workbench.files import Folder
 from jbf.workbench.jobs import Ending, Jobs
 from jbf.workbench.models import Models
+from jbf.workbench.reading import Readings
+from jbf.workbench.source_cache import SourceCache
 from jbf.workbench.work import Kind, Order
 
 
@@ -40,6 +42,8 @@ class Session:
         self.version = 1
         self.lock = threading.RLock()
         self.jobs = Jobs(self.changed)
+        self.readings = Readings(self.changed)
+        self.sources = SourceCache()
         self.message: dict[str, str] = {}
         self.bench: Bench | None = None
         self.models = Models()
@@ -85,9 +89,12 @@ class Session:
         Raises
         ------
         InputError
-            A file is wrong, or a fit is running; the present rig and runs are kept.
+            A file is wrong, the reading was cancelled, or a fit is running; the present rig and
+            runs are kept.
         """
-        self.put(Bench.read(self.folder, rig_name, run_names), Models())
+        with self.readings.begin(f"opening {rig_name}") as reading:
+            bench = Bench.read(self.folder, rig_name, run_names, reading.progress)
+        self.put(bench, Models())
         self.say("done", f"{rig_name} is open, with {count_of(len(run_names), 'run')}")
 
     def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
@@ -255,7 +262,7 @@ class Session:
     def to_dict(self) -> dict[str, Any]:
         """Complete state of the session for the page."""
         with self.lock:
-            job, bench = self.jobs.job, self.bench
+            job, bench = self.readings.job or self.jobs.job, self.bench
             state: dict[str, Any] = {
                 "version": self.version,
                 "folder": str(self.folder.root),
@@ -286,6 +293,10 @@ class Session:
         """Law of the displayed model; without a model, that of the first fit."""
         node = self.models.nodes.get(self.models.current or 0)
         return self._fit_law() if node is None else str(node["law"])
+
+    def cancel(self) -> bool:
+        """Cancel the running reading, otherwise the running job; return False if there is none."""
+        return self.readings.cancel() or self.jobs.cancel()
 
     def close(self) -> None:
         """Stop the running job and delete the temporary files."""

@@ -65,7 +65,7 @@ def assert_page_fits_the_window(page: Page) -> None:
 @pytest.mark.extended
 def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path: Path) -> None:
     with served(tmp_path) as address, examine_runs(address) as (page, messages):
-        click(page, "demo")
+        click(page, "sample-bearing")
         page.wait_for_selector("#runs [data-key^=run-]")
         page.wait_for_selector("[data-drawn] canvas")
         assert_page_fits_the_window(page)
@@ -199,6 +199,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
         page.set_input_files("input[type=file]", logs)
         page.wait_for_selector("text=log1: 3000 samples")
+        click(page, "columns")
         # A different unit changes the numbers and can be undone.
         force = page.locator("tr:has([data-key='is-Force [N]']) td.n")
         right = force.inner_text()

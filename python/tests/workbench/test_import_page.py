@@ -11,6 +11,7 @@ pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
 from jbf.cli import main
 from jbf.workbench.files import Folder
+from jbf.workbench.reading import Cancelled
 from jbf.workbench.session import Session
 from starlette.testclient import TestClient
 from workbench_parts import client_of, slide_log
@@ -42,7 +43,7 @@ def guess_of(client: TestClient) -> Any:
 def request_of(client: TestClient, **more: object) -> dict[str, object]:
     """A request for both logs with the map guessed from the first one."""
     outcome = guess_of(client)
-    assert outcome["questions"] == []
+    assert outcome["open"] == outcome["confirm"] == []
     files = ["log1.csv", "log2.csv"]
     return {"files": files, "map": outcome["map"], "into": outcome["into"], **more}
 
@@ -104,7 +105,7 @@ def test_friction_in_percent_requires_the_rated_force_of_the_drive(client: TestC
     ]
     result = preview_with_form(client, outcome["map"], rows).json()
     assert result["form"]["rig"]["drive"]["friction"] == "percent"
-    assert "drive.rated_force_n: is open" in result["problem"]
+    assert [point["place"] for point in result["open"]] == ["drive.rated_force_n"]
     assert result["runs"] == []
     rows, rig = result["form"]["rows"], {"drive.rated_force_n": "250"}
     result = preview_with_form(client, result["map"], rows, rig).json()
@@ -139,3 +140,118 @@ def test_command_line_shown_for_an_import_reproduces_the_run(
     monkeypatch.chdir(folder)
     assert main(shlex.split(command)[1:]) == 0
     assert (folder / "slide" / "log1.csv").read_bytes() == before
+
+
+@pytest.fixture
+def odd(folder: Path) -> Path:
+    """A file whose columns have no units, with two columns that could be the friction."""
+    rows = [f"{10 * i};{i % 50};{(i % 7) / 10};{i % 5};x" for i in range(400)]
+    (folder / "odd.csv").write_text("\n".join(["t;pos;torque;force;note", *rows, ""]))
+    return folder
+
+
+def test_open_points_offer_the_units_and_columns_that_are_valid(
+    client: TestClient, odd: Path
+) -> None:
+    outcome = client.post("/api/look", json={"file": "odd.csv"}).json()
+    by_key = {point["key"]: point for point in outcome["open"]}
+    assert set(by_key) == {"time_s", "angle_rad", "torque_n_m"}
+    units = [value for value, _ in by_key["time_s"]["choices"]]
+    assert {"s", "ms", "ns"} < set(units)
+    assert "N" not in units
+    assert [value for value, _ in by_key["torque_n_m"]["choices"]] == ["torque", "force"]
+    assert outcome["confirm"] == []
+
+
+def test_import_is_ready_once_all_open_points_are_answered(client: TestClient, odd: Path) -> None:
+    outcome = client.post("/api/look", json={"file": "odd.csv"}).json()
+    answers = {"time_s": ("t", "ms"), "angle_rad": ("pos", "deg"), "torque_n_m": ("torque", "N m")}
+    rows = [
+        {"key": key, "column": column, "unit": unit, "turned": False}
+        for key, (column, unit) in answers.items()
+    ]
+    form = {"rows": rows, "rig": {}}
+    request = {"files": ["odd.csv"], "map": outcome["map"], "form": form}
+    result = client.post("/api/try", json=request).json()
+    assert result["open"] == []
+    assert result["problem"] is None
+    torque = next(c for c in result["runs"][0]["columns"] if c["from"] == "torque_n_m")
+    assert (torque["most"], torque["unit"]) == (0.6, "N m")
+
+
+def test_preview_has_curves_in_units_of_the_map_and_the_default_cut(folder: Path) -> None:
+    t = np.arange(0.0, 12.0, 0.01)
+    moving = (t % 4.0) < 3.0
+    x = np.cumsum(np.where(moving, 0.03, 0.0)) * 0.01
+    rng = np.random.default_rng(0)
+    force = np.where(moving, 5.0, 0.0) + 0.1 * rng.standard_normal(len(t))
+    (folder / "stops.csv").write_text(slide_log(t, x, force))
+    client = client_of(Session(Folder.of(folder)))
+    outcome = client.post("/api/look", json={"file": "stops.csv"}).json()
+    request = {"files": ["stops.csv"], "map": outcome["map"]}
+    result = client.post("/api/try", json=request).json()
+    assert len(result["runs"]) == 3
+    left_out = [piece for piece in result["pieces"] if not piece["keep"]]
+    assert all(piece["to_s"] - piece["from_s"] < 1.0 for piece in left_out)
+    (curves,) = result["curves"]
+    assert max(curves["columns"]["friction_n"]["values"]) == pytest.approx(force.max(), rel=1e-3)
+    times = curves["columns"]["position_m"]["time_s"]
+    assert times == sorted(times)
+    # The same runs as an import.
+    imported = client.post("/api/import", json={**request, "into": "stops_runs"}).json()
+    assert len(imported["files"]) == 3
+
+
+def test_change_of_a_unit_does_not_read_the_file_again(folder: Path) -> None:
+    session = Session(Folder.of(folder))
+    client = client_of(session)
+    request = request_of(client, files=["log1.csv"])
+    first = client.post("/api/try", json=request).json()
+    assert session.sources.reads == 1
+    text = str(request["map"]).replace("`Force [N]`", "`Force [N]` [kN]")
+    second = client.post("/api/try", json={**request, "map": text}).json()
+    client.post("/api/import", json={**request, "map": text, "into": "kilo"})
+    assert session.sources.reads == 1
+    most = [
+        next(c["most"] for c in r["runs"][0]["columns"] if c["name"] == "friction_n")
+        for r in (first, second)
+    ]
+    assert most[1] == pytest.approx(1000.0 * most[0])
+    # A file that has changed is read again.
+    log = (folder / "log1.csv").read_text()
+    (folder / "log1.csv").write_text(log + log.splitlines()[-1].replace("19990", "20000") + "\n")
+    again = client.post("/api/try", json=request).json()
+    assert session.sources.reads == 2
+    assert again["runs"][0]["samples"] == first["runs"][0]["samples"] + 1
+
+
+def test_preview_from_stored_columns_equals_that_from_the_file(client: TestClient) -> None:
+    request = request_of(client)
+    first, second = (client.post("/api/try", json=request).json() for _ in range(2))
+    assert first == second
+
+
+def test_new_reading_cancels_the_one_before_it(folder: Path) -> None:
+    session = Session(Folder.of(folder))
+    with session.readings.begin("first") as first:
+        first.tick(1, 2)
+        with session.readings.begin("second") as second, pytest.raises(Cancelled):
+            first.tick(2, 2)
+        second.tick(1, 1)
+    with session.readings.begin("third") as third:
+        assert session.cancel()
+        with pytest.raises(Cancelled):
+            third.tick(1, 2)
+    assert not session.cancel()
+
+
+@pytest.mark.parametrize("name", ["bearing", "axis", "joint"])
+def test_sample_opens_with_its_runs_and_is_copied_once(folder: Path, name: str) -> None:
+    session = Session(Folder.of(folder))
+    client = client_of(session)
+    for _ in range(2):
+        assert client.post("/api/sample", json={"name": name}).status_code == 200
+    assert len(client.get("/api/state").json()["runs"]) in (4, 5)
+    assert len([path for path in folder.iterdir() if path.is_dir()]) == 1
+    assert client.post("/api/sample", json={"name": "other"}).status_code == 422
+    session.close()

@@ -28,9 +28,21 @@ export async function post(name, parameters = {}) {
   return (await answered(await fetch(`/api/${name}`, { method: "POST", headers, body }))).json();
 }
 
-export async function upload(file) {
-  const at = `/api/upload?name=${encodeURIComponent(file.name)}`;
-  return (await answered(await fetch(at, { method: "POST", headers, body: file }))).json();
+// `progress(share)` is called with the share that was sent.
+export function upload(file, progress) {
+  return new Promise((resolve, reject) => {
+    const request = new XMLHttpRequest();
+    request.open("POST", `/api/upload?name=${encodeURIComponent(file.name)}`);
+    for (const [name, value] of Object.entries(headers)) request.setRequestHeader(name, value);
+    request.upload.onprogress = (event) => { if (event.lengthComputable && file.size > 1e7) progress(event.loaded / event.total); };
+    request.onerror = () => reject(new Error(`${file.name}: the connection was lost`));
+    request.onload = () => {
+      let answer = {};
+      try { answer = JSON.parse(request.responseText); } catch { answer = { error: request.responseText }; }
+      if (request.status === 200) resolve(answer); else reject(new Error(answer.error));
+    };
+    request.send(file);
+  });
 }
 
 // A text as a file of the browser's own.

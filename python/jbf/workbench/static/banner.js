@@ -10,11 +10,13 @@ export function showBanner(page, place) {
   place.dataset.kind = node?.banner.kind ?? "none";
   put(place,
     number === null ? null : h("div", { class: "number", "data-key": "times-noise" }, `${MARKS[node.banner.kind]} ${times(number)}`, h("small", {}, "the noise")),
-    h("div", { class: "words" }, h("b", {}, node ? node.banner.words : "No model yet: is something missing in the friction of these runs?"),
+    h("div", { class: "words" }, h("b", {}, node ? node.banner.words : headline(state.job)),
       step ? h("p", {}, `Next: ${step.words}`) : null),
     step?.buttons ? h("div", { class: "row tight" }, step.buttons.map(([key, words, act]) =>
       h("button", { class: "main", "data-key": `next-${key}`, onclick: act }, words))) : null);
 }
+
+const headline = (job) => (job?.words.startsWith("diagnosis") ? "Diagnosing these runs …" : "No model yet: is something missing in the friction of these runs?");
 
 function nextStep(page) {
   const { state } = page, node = page.model, here = page.name;

@@ -17,7 +17,7 @@ export const hollow = (name, label, tint) => curve(name, label, tint, {
 export class Chart {
   // `place` an element; `curves` as above; `brushed(from, to)` and `zoomed(from, to)` receive what was dragged over.
   constructor(place, { curves, unit, height = 190, brushed, zoomed, mode = () => "zoom", sync, legend = true, across = "time (s)", scales = {} }) {
-    Object.assign(this, { place, curves, height, marks: [], selected: [], data: null });
+    Object.assign(this, { place, curves, height, marks: [], selected: [], edges: [], data: null });
     this.settings = { unit, brushed, zoomed, mode, sync, legend, across, scales };
     this.build();
     new ResizeObserver(() => this.plot.setSize({ width: this.width(), height })).observe(place);
@@ -91,5 +91,12 @@ export class Chart {
     };
     paint(this.marks, "beside", 0.16);
     paint(this.selected, "selected", 0.3);
+    u.ctx.save();
+    u.ctx.strokeStyle = colour("beside"); u.ctx.setLineDash([4, 4]); u.ctx.lineWidth = 1;
+    for (const edge of this.edges) {
+      const x = u.valToPos(edge, "x", true);
+      u.ctx.beginPath(); u.ctx.moveTo(x, top); u.ctx.lineTo(x, top + height); u.ctx.stroke();
+    }
+    u.ctx.restore();
   }
 }

@@ -1,42 +1,41 @@
-// A recording of another make: which column is what, in which unit, and the numbers that come of it.
-import { h, number, put } from "./dom.js";
+// A recording of another make: a card for each open question, a preview, and the columns.
+import { Chart, curve } from "./chart.js";
+import { h, number, put, s } from "./dom.js";
 
 const RIG = {
-  motion: "motion", friction: "friction measured as", rated_torque_n_m: "rated torque (100 %), N m", rated_force_n: "rated force (100 %), N",
-  torque_constant_n_m_a: "torque per ampere, N m/A", force_constant_n_a: "force per ampere, N/A",
-  pitch_m: "travel per revolution, m", gear_ratio: "gear ratio (motor/output)",
+  motion: "motion", friction: "friction measured as", rated_torque_n_m: "rated torque (100 %)", rated_force_n: "rated force (100 %)",
+  torque_constant_n_m_a: "torque per ampere", force_constant_n_a: "force per ampere",
+  pitch_m: "travel per revolution", gear_ratio: "gear ratio (motor/output)",
 };
 const CHOICES = { motion: ["linear", "rotary"], friction: ["force", "torque", "current", "percent", "voltage", "none"] };
-// What a run calls a column that was converted.
-const MADE = { speed_rpm: "velocity_m_s", velocity_rad_s: "velocity_m_s", motor_velocity_rad_s: "velocity_m_s", motor_speed_rpm: "velocity_m_s",
-  torque_n_m: "friction_n", motor_torque_n_m: "friction_n", current_a: "friction_n", torque_percent: "friction_n", force_percent: "friction_n",
-  motor_angle_rad: "angle_rad" };
 
 export class ImportForm {
-  // `done` is called when the runs are open, `closed` when the form is put away.
-  constructor(page, place, files, found, { done, closed }) {
-    Object.assign(this, { page, place, files, found, done, closed });
+  // `done` is called when the runs are open, `closed` when the form is put away, `again(joint)` to import another joint.
+  constructor(page, place, files, found, { done, closed, again }) {
+    Object.assign(this, { page, place, files, found, done, closed, again });
     this.text = found.map; this.form = found.form; this.answer = null; this.requests = 0; this.into = found.into;
-    this.open = false; this.questions = found.questions;
+    this.points = found.open; this.confirm = found.confirm; this.opened = {};
     this.show();
-    place.querySelector("select")?.focus();
+    place.querySelector("select, button")?.focus();
     this.send(null);
   }
 
-  // The map as it stands, or as the form changes it; what comes back is shown.
+  // The map as it is, or as the form changes it; the answer is shown.
   async send(form) {
     const request = ++this.requests;
-    const answer = await this.page.do("try", { files: this.files, map: this.text, form });
+    // Answers that are not applied yet are sent again with the next one.
+    this.waiting = form ? { ...form, rig: { ...this.waiting?.rig, ...form.rig }, rate_hz: form.rate_hz ?? this.waiting?.rate_hz ?? null } : null;
+    if (form) this.form = { ...this.form, rows: [...form.rows, ...this.form.rows.filter((row) => row.column === undefined && !form.rows.some((r) => r.key === row.key))] };
+    const answer = await this.page.do("try", { files: this.files, map: this.text, form: this.waiting });
     if (request !== this.requests) return;
-    if (answer) {
-      this.text = answer.map; this.form = answer.form; this.answer = answer;
-      if (form) this.questions = [];
-    }
+    this.waiting = null;
+    if (answer) { this.text = answer.map; this.form = answer.form; this.answer = answer; this.points = answer.open; }
+    else this.answer = { runs: [], problem: "the file was not read", open: this.points };
     this.show();
   }
 
-  async keep() {
-    const found = await this.page.do("import", { files: this.files, map: this.text, into: this.into });
+  async keep(diagnose) {
+    const found = await this.page.do("import", { files: this.files, map: this.text, into: this.into, diagnose });
     if (found) this.done(found);
   }
 
@@ -51,38 +50,103 @@ export class ImportForm {
     this.send({ rows, rig: {} });
   }
 
-  show() {
-    const { found, answer } = this, ready = answer && !answer.problem;
-    const names = this.files.length > 3 ? `${this.files.slice(0, 2).join(", ")} and ${this.files.length - 2} more` : this.files.join(", ");
-    const text = h("textarea", { "aria-label": "map", spellcheck: "false", "data-key": "map", onchange: () => { this.text = text.value; this.send(null); } });
-    text.value = this.text;
-    const into = h("input", { value: this.into, "aria-label": "name of the campaign", "data-key": "into", oninput: (e) => { this.into = e.target.value; } });
-    put(this.place, h("h2", {}, `Import ${names}`),
-      h("p", {}, "Assign a quantity and a unit to each column. Check the preview on the right, then import."),
-      h("table", {}, h("thead", {}, h("tr", {}, ["column", "first values", "quantity", "unit", "negate", "preview"].map((w) => h("th", {}, w)))),
-        h("tbody", {}, found.columns.map((column) => this.row(column)))),
-      this.formulas(), this.rig(),
-      h("p", { class: ready ? "good" : "bad", role: "status", "data-key": "problem" }, this.says()),
-      h("div", { class: "row" }, h("label", {}, "Target folder ", into),
-        h("button", { class: "main", "data-key": "import", disabled: !ready, onclick: () => this.keep() }, "Import"),
-        h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close")),
-      h("details", { open: this.open, ontoggle: (e) => { this.open = e.target.open; } }, h("summary", { "data-key": "map-text" }, "Map as text (formulas, cuts, clocks)"), text));
+  // The answer to an open question.
+  reply(point, value) {
+    const rows = this.rows().map((row) => ({ ...row })), column = (name) => this.found.columns.find((c) => c.name === name);
+    const assign = (key, name) => [...rows.filter((row) => row.key !== key), { key, column: name, unit: column(name)?.unit || (column(name)?.kind === "instant" ? null : "?"), turned: false }];
+    if (point.kind === "unit") this.send({ rows: rows.map((row) => (row.key === point.key ? { ...row, unit: value } : row)), rig: {} });
+    else if (point.kind === "column") this.send({ rows: assign(point.key, value), rig: {} });
+    else if (point.kind === "value") this.send({ rows, rig: { [point.place]: value } });
+    else if (point.kind === "rate") this.send({ rows, rig: {}, rate_hz: value });
+    else if (point.kind === "joint") this.again(value);
+    else if (point.kind === "formula") this.send({ rows: [...rows, { key: point.key, expression: point.expression.replace("?", value) }], rig: {} });
+    else if (value === "none") this.send({ rows, rig: { "drive.friction": "none", [`drive.${this.rotary() ? "inertia_kg_m2" : "mass_kg"}`]: "?" } });
+    else { const [key, ...name] = value.split(" "); this.send({ rows: assign(key, name.join(" ")), rig: {} }); }
   }
 
-  says() {
+  rotary() { return this.form.rig.drive?.motion === "rotary"; }
+
+  show() {
+    const { found, answer } = this, open = this.points.length + this.confirm.length, ready = answer && !answer.problem && !open;
+    const names = this.files.length > 3 ? `${this.files.slice(0, 2).join(", ")} and ${this.files.length - 2} more` : this.files.join(", ");
+    const into = h("input", { class: "name", value: this.into, "aria-label": "name of the campaign", "data-key": "into", oninput: (e) => { this.into = e.target.value; } });
+    const text = h("textarea", { "aria-label": "map", spellcheck: "false", "data-key": "map", onchange: () => { this.text = text.value; this.send(null); } });
+    text.value = this.text;
+    this.plots = h("div");
+    put(this.place, h("h2", {}, `Import ${names}`),
+      h("p", { class: answer?.problem && !open ? "bad" : "", role: "status", "data-key": "problem" }, this.says(open)),
+      h("div", { class: "cards" }, [...found.joint, ...this.points].map((point, i) => this.card(point, i)), this.confirm.map((point) => this.confirmation(point))),
+      h("div", { class: "row" },
+        h("button", { class: "main", "data-key": "import-diagnose", disabled: !ready, onclick: () => this.keep(true) }, "Import and diagnose"),
+        h("button", { "data-key": "import", disabled: !ready, onclick: () => this.keep(false) }, "Import only"),
+        h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close"),
+        h("label", {}, "as folder ", into)),
+      this.plots,
+      this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, ["column", "course", "first values", "quantity", "unit", "negate", "read as"].map((w) => h("th", {}, w)))),
+        h("tbody", {}, found.columns.map((column) => this.row(column)))), this.formulas(), this.rig())),
+      this.part("map-text", "Map as text (formulas, cuts, clocks)", text));
+    if (answer?.curves) this.preview(answer);
+    else put(this.plots, h("div", { class: "row" }, found.columns.filter((c) => c.shape && this.rows().some((r) => r.column === c.name)).map((c) => h("figure", {}, course(c.shape), h("figcaption", {}, `${c.name}, first rows`)))));
+  }
+
+  part(key, words, ...content) {
+    return h("details", { open: this.opened[key] ?? false, ontoggle: (e) => { this.opened[key] = e.target.open; } }, h("summary", { "data-key": key }, words), content);
+  }
+
+  says(open) {
     const { answer } = this;
-    if (!answer) return "Reading…";
-    if (answer.problem) return `Incomplete: ${this.questions.length ? this.questions.join("; ") : answer.problem}.`;
+    if (open) return `${open} question${open > 1 ? "s" : ""}, then the recording can be imported.`;
+    if (!answer) return "Reading …";
+    if (answer.problem) return `Not yet: ${answer.problem}.`;
     const runs = answer.runs.map((run) => `${run.name}: ${run.samples} samples`);
     return `Ready: ${runs.slice(0, 6).join("; ")}${runs.length > 6 ? ` and ${runs.length - 6} more runs` : ""}.`;
+  }
+
+  card(point, i) {
+    const name = `answer-${point.key ?? point.place ?? point.kind}`, many = point.choices.length > 9;
+    const set = (value) => this.reply(point, value);
+    const field = (placeholder, words) => h("input", { class: "short", placeholder, "aria-label": words, "data-key": name, onchange: (e) => { if (e.target.value) set(e.target.value); } });
+    const column = this.found.columns.find((c) => c.name === point.column);
+    return h("section", { class: `card${point.kind === "joint" ? "" : " open"}`, "aria-label": point.title, "data-point": point.kind },
+      h("div", { class: "top" }, h("h3", {}, point.title), column ? course(column.shape) : null),
+      column ? h("p", { class: "faint" }, `first values: ${column.first.join(", ")}`) : null,
+      point.choices.length === 0 ? h("label", {}, point.example ? `such as ${point.example} ` : "number ", field(point.example ?? "", point.title))
+        : many ? h("select", { "aria-label": point.title, "data-key": name, onchange: (e) => set(e.target.value) }, h("option", { value: "" }, "choose …"), point.choices.map(([value, words]) => h("option", { value, selected: value === point.chosen }, words)))
+          : h("div", { class: "choices" }, point.choices.map(([value, words]) => h("button", { "data-key": `${name}-${value}`, "aria-pressed": String(value === point.chosen), onclick: () => set(value) }, words))),
+      point.key === "time_s" && point.kind === "column" ? h("p", {}, h("label", {}, "or constant rate, Hz ", h("input", { class: "short", type: "number", "aria-label": "sampling rate, Hz", "data-key": "answer-rate", onchange: (e) => this.reply({ kind: "rate" }, Number(e.target.value)) }))) : null);
+  }
+
+  confirmation(point) {
+    return h("section", { class: "card open", "aria-label": "please check", "data-point": "confirm" }, h("h3", {}, "Please check"), h("p", {}, point.title),
+      h("div", { class: "choices" }, h("button", { "data-key": "confirm", onclick: () => { this.confirm = this.confirm.filter((p) => p !== point); this.show(); } }, "It is right")));
+  }
+
+  // Friction and motion in their units, with the pieces that become runs.
+  preview(answer) {
+    const kept = answer.pieces.filter((p) => p.keep), several = answer.pieces.length > 1;
+    for (const recording of answer.curves.slice(0, 2)) {
+      const pieces = answer.pieces.filter((p) => p.file === recording.file), at = (p, t) => t + (recording.starts_s[p.segment] ?? 0);
+      this.plots.append(h("h3", {}, `${recording.file}: ${several ? `cut into ${kept.length} runs; shaded: left out` : "one run, not cut"}`));
+      for (const [key, { time_s, values }] of Object.entries(recording.columns)) {
+        const place = h("div", { class: "plot" }), quantity = this.found.quantities.find((q) => q.key === key);
+        this.plots.append(place);
+        const chart = new Chart(place, { curves: [curve("values", quantity?.words ?? key, "measured")], unit: `${quantity?.words.split(" ")[0] ?? key} (${quantity?.units[0] ?? ""})`, height: 130, legend: false });
+        chart.edges = several ? pieces.filter((p) => p.keep).map((p) => at(p, p.from_s)) : [];
+        chart.show({ time_s, values });
+        chart.mark(pieces.filter((p) => !p.keep).map((p) => [at(p, p.from_s), at(p, p.to_s)]), []);
+      }
+    }
+    const notes = answer.notes.filter((note) => !note.startsWith("described"));
+    if (notes.length) this.plots.append(h("ul", {}, notes.map((note) => h("li", {}, note.replace(" (--no-cut keeps it whole)", "")))));
+    this.plots.dataset.drawn = String(kept.length);
   }
 
   row(column) {
     const row = this.rows().find((r) => r.column === column.name), key = row?.key ?? "";
     const known = this.found.quantities.find((q) => q.key === key), list = `units-${column.name}`;
     const other = key && !known ? [h("option", { value: key, selected: true }, key)] : [];
-    return h("tr", { class: row ? "" : "unused" }, h("td", {}, column.name), h("td", { class: "faint" }, column.first.join(", ")),
-      h("td", {}, h("select", { "data-key": `is-${column.name}`, "aria-label": `quantity of ${column.name}`, onchange: (e) => this.change(column, { key: e.target.value }) },
+    return h("tr", { class: row ? "" : "unused" }, h("td", {}, column.name), h("td", {}, course(column.shape)), h("td", {}, column.first.join(", ")),
+      h("td", {}, h("select", { "data-key": `is-${column.name}`, "aria-label": `quantity of ${column.name}`, title: this.found.why[key] ?? "", onchange: (e) => this.change(column, { key: e.target.value }) },
         h("option", { value: "", selected: !row }, "not used"), other,
         this.found.quantities.map((q) => h("option", { value: q.key, selected: q.key === key }, q.words)))),
       h("td", {}, row ? [h("input", { class: "short", list, value: row.unit === "?" ? "" : row.unit ?? column.unit ?? "", placeholder: "unit?", "data-key": `unit-${column.name}`, "aria-label": `unit of ${column.name}`,
@@ -94,7 +158,7 @@ export class ImportForm {
 
   // From the least to the largest value of what a column becomes, in all runs.
   read(key) {
-    const found = (this.answer?.runs ?? []).flatMap((run) => run.columns.filter((c) => c.name === key || c.name === MADE[key]));
+    const found = (this.answer?.runs ?? []).flatMap((run) => run.columns.filter((c) => c.name === key || c.from === key));
     if (!found.length) return "";
     return `${number(Math.min(...found.map((c) => c.least)))} to ${number(Math.max(...found.map((c) => c.most)))} ${found[0].unit}`;
   }
@@ -117,4 +181,11 @@ export class ImportForm {
       return h("label", {}, `${RIG[field.key] ?? field.key.replaceAll("_", " ")} `, input);
     }));
   }
+}
+
+// The course of the first rows of a column.
+function course(shape) {
+  if (!shape) return null;
+  const points = shape.map((v, i) => (v === null ? null : `${(1 + 90 * i / Math.max(shape.length - 1, 1)).toFixed(1)},${(39 - 36 * v).toFixed(1)}`)).filter(Boolean).join(" ");
+  return s("svg", { class: "sketch", viewBox: "0 0 92 42", "aria-hidden": "true" }, s("polyline", { points, fill: "none", stroke: "var(--measured)", "stroke-width": 1.4 }));
 }

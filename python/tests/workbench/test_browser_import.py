@@ -1,0 +1,74 @@
+"""Import of recordings in a real browser: questions, samples, one click to a verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("starlette", reason="the workbench's server is an extra")
+
+from workbench_walk import examine_runs, served, why_not
+
+pytestmark = pytest.mark.skipif(why_not() is not None, reason=str(why_not()))
+
+
+@pytest.mark.extended
+def test_ros_joint_log_leads_to_a_verdict_with_one_click(tmp_path: Path) -> None:
+    """A joint with 0.42 kg m^2 and gravity, stamps in ns with jitter, no units in the header."""
+    folder, log = tmp_path / "empty", tmp_path / "joint_states.csv"
+    folder.mkdir()
+    random, t = np.random.default_rng(5), np.arange(0.0, 60.0, 0.008)
+    waves = ((1.1, 0.7, 0.0), (0.4, 1.9, 0.3))
+    q = sum(a * np.sin(w * t + p) for a, w, p in waves)
+    speed = sum(a * w * np.cos(w * t + p) for a, w, p in waves)
+    acceleration = -sum(a * w**2 * np.sin(w * t + p) for a, w, p in waves)
+    effort = 1.8 * np.tanh(speed / 0.01) + 0.9 * speed + 0.42 * acceleration + 6.5 * np.sin(q)
+    effort += 0.08 * random.standard_normal(len(t))
+    stamps = (1763390000 * 10**9 + 1e9 * (t + 2e-4 * random.standard_normal(len(t)))).astype(int)
+    lines = [
+        f"{ns},{a:.5f},{b:.5f},{c:.4f}"
+        for ns, a, b, c in zip(stamps, q, speed, effort, strict=True)
+    ]
+    log.write_text("\n".join(["header.stamp,position,velocity,effort", *lines, ""]))
+    with served(folder) as address, examine_runs(address) as (page, messages):
+        page.wait_for_selector("[data-listed]")
+        page.set_input_files("input[type=file]", str(log))
+        page.wait_for_selector("[data-key=import-diagnose]:enabled")
+        assert page.locator("[data-point]").count() == 0
+        page.click("[data-key=import-diagnose]")
+        page.wait_for_selector("[data-key=times-noise]")
+        assert float(page.inner_text("[data-key=times-noise]").split()[1]) < 1.5
+        assert page.locator("#banner[data-kind]").count() == 1
+        assert messages.complaints == messages.outside == []
+
+
+def test_questions_of_an_import_are_answered_by_clicks(tmp_path: Path) -> None:
+    t = np.arange(0.0, 8.0, 0.01)
+    rows = np.column_stack([1000 * t, 40 * np.sin(2 * t), 0.3 * np.sign(np.cos(2 * t)), 0 * t])
+    (tmp_path / "odd.csv").write_text("t;pos;torque;force\n")
+    with (tmp_path / "odd.csv").open("a") as file:
+        np.savetxt(file, rows, "%.4f", ";")
+    with served(tmp_path) as address, examine_runs(address) as (page, messages):
+        page.click("[data-key='pick-odd.csv']")
+        page.click("[data-key=import-chosen]")
+        page.click("[data-key=answer-time_s-ms]")
+        page.click("[data-key=answer-angle_rad-deg]")
+        page.click("[data-key=answer-torque_n_m-torque]")
+        # A column without a unit leads to the question of its unit.
+        page.click("[data-key='answer-torque_n_m-N m']")
+        page.wait_for_selector("#section [data-drawn] canvas")
+        assert page.locator("[data-point]").count() == 0
+        page.click("[data-key=import]")
+        page.wait_for_selector("#runs [data-key=run-odd]")
+        assert messages.complaints == messages.outside == []
+
+
+def test_sample_opens_by_one_click_on_the_empty_page(tmp_path: Path) -> None:
+    with served(tmp_path) as address, examine_runs(address) as (page, messages):
+        assert page.locator(".drop.large").count() + page.locator("#runs").count() >= 1
+        page.click("[data-key=sample-axis]")
+        page.wait_for_selector("#runs [data-key=run-run_1]")
+        page.wait_for_selector("#banner [data-key=next-diagnose]")
+        assert messages.complaints == messages.outside == []

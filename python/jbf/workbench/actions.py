@@ -12,6 +12,7 @@ from jbf.errors import InputError
 from jbf.workbench import channels as any_channel
 from jbf.workbench import choices, effect_views, importer, samples, saved_files, views
 from jbf.workbench.session import Session
+from jbf.workbench.work import Settings
 
 Parameters = dict[str, Any]
 MOST_PIXELS = 4000
@@ -193,6 +194,32 @@ def fit(session: Session, parameters: Parameters) -> Any:
     return {}
 
 
+def refit(session: Session, parameters: Parameters) -> Any:
+    """Start a fit of a model's law and effects with starting values, fixed values and bounds."""
+    number = _number(parameters)
+    settings = Settings.of(dict(parameters["settings"]))
+    session.begin("fit", session.models.node(number)["effects"], number, settings)
+    return {}
+
+
+def edited(session: Session, parameters: Parameters) -> Any:
+    """Prediction for a run with changed parameter values, for a plot."""
+    values = {str(name): float(value) for name, value in dict(parameters["values"]).items()}
+    return effect_views.edited(
+        session, _number(parameters), values, str(parameters["run"]), _span(parameters),
+        _pixels(parameters),
+    )  # fmt: skip
+
+
+def label(session: Session, parameters: Parameters) -> Any:
+    """Set the name and the note of a model."""
+    session.models.label(
+        _number(parameters), str(parameters["name"])[:80], str(parameters["note"])[:2000]
+    )
+    session.changed()
+    return {}
+
+
 def diagnose(session: Session, parameters: Parameters) -> Any:
     """Start a complete diagnosis."""
     session.begin("diagnose", (), _parent(parameters))
@@ -270,6 +297,9 @@ COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "leave_out": leave_out,
     "law": law,
     "fit": fit,
+    "refit": refit,
+    "edited": edited,
+    "label": label,
     "diagnose": diagnose,
     "cancel": cancel,
     "show": show,

@@ -19,7 +19,7 @@ from jbf.diagnosis import Diagnosis, Step
 from jbf.diagnosis.power import Power
 from jbf.errors import JbfError
 from jbf.estimation.fit import Fit
-from jbf.models.catalogue import transition_speed
+from jbf.models.catalogue import parameters_of, transition_speed
 from jbf.models.model import Model
 from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
@@ -111,9 +111,19 @@ def _steady_curve(comparison: Comparison) -> Answer | None:
 
 
 def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
-    """Parameters of a model with their units, for the page."""
+    """Parameters of a model with their units, bounds and meanings, for the page."""
     units = units_of(model.law, model.effects, model.rig.quantities)
-    return {name: {**p.to_dict(), "unit": units[name]} for name, p in values.items()}
+    pages = parameters_of(model.law, model.effects)
+    return {
+        name: {
+            **p.to_dict(),
+            "unit": units[name],
+            "lower": pages[name].lower,
+            "upper": pages[name].upper,
+            "meaning": pages[name].meaning,
+        }
+        for name, p in values.items()
+    }
 
 
 def of_fit(fit: Fit) -> Answer:

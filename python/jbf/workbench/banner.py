@@ -20,6 +20,7 @@ def banner_of(node: Mapping[str, Any]) -> dict[str, Any]:
     The number is the held-out error, or else the error of the fit, as a multiple of the noise. The
     kind is `good`, `warn` or `bad`.
     """
+    name = node.get("name") or " + ".join([node["law"], *node["effects"]])
     error = node.get("held_out_rms") or node["rms"]
     ratio = error / node["noise_rms"] if node["noise_rms"] > 0.0 else None
     diagnosis = node.get("diagnosis")
@@ -29,11 +30,11 @@ def banner_of(node: Mapping[str, Any]) -> dict[str, Any]:
     if ratio is None:
         return {"times_noise": None, "kind": "warn", "words": "The noise of the runs is unknown."}
     if ratio > AT_NOISE:
-        words = f"Something is missing in {node['words']}."
+        words = f"Something is missing in {name}."
         return {"times_noise": ratio, "kind": "bad" if ratio > 2.0 else "warn", "words": words}
     better = next((t for t in node.get("trials") or () if t["outcome"] == "added"), None)
     if better is not None:
         words = f"Nearly complete; {better['effect']} still reduces the held-out error."
         return {"times_noise": ratio, "kind": "warn", "words": words}
-    words = f"Nothing is missing: {node['words']} explains the runs down to the noise."
+    words = f"Nothing is missing: {name} explains the runs down to the noise."
     return {"times_noise": ratio, "kind": "good", "words": words}

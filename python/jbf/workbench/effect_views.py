@@ -1,7 +1,8 @@
-"""Contribution of an effect to the friction of a run, for a plot over the residual."""
+"""Changes of a model for a plot: the contribution of an effect, and other parameter values."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,37 @@ def contribution(base: Model, effect: str, run: Run) -> Array:
     richer = Model(base.rig, base.law, [*base.effects, effect], _usual(base, effect), base.clock)
     difference: Array = richer.predict(run) - base.predict(run)
     return difference
+
+
+def edited(
+    session: Session, number: int, values: Mapping[str, float], name: str,
+    span: tuple[float | None, float | None], pixels: int,
+) -> dict[str, Any]:  # fmt: skip
+    """Prediction for a run with changed parameter values, and its RMS error in that run.
+
+    Raises
+    ------
+    InputError
+        A name is unknown, or a value is outside its bounds.
+    """
+    run, run_series = session.on_bench().run(name), series_of_run(session, number, name)
+    base = session.model(number)
+    present = {key: p.value for key, p in base.parameters.items()}
+    unknown = next((key for key in values if key not in present), None)
+    if unknown is not None:
+        raise InputError(key=unknown, problem="is not a parameter", remedy=f"choose {[*present]}")
+    changed = Model(base.rig, base.law, base.effects, {**present, **values}, base.clock)
+    predicted = np.interp(run_series.time_s, run.time_s, changed.predict(run))
+    columns = {"edited_n": predicted}
+    for key in ("friction_n", "model_n"):
+        if key in run_series.columns():
+            columns[key] = run_series.columns()[key]
+    rms = None
+    if run_series.friction is not None and run_series.counted is not None:
+        used = (run_series.counted > 0) & np.isfinite(predicted)
+        rms = float(np.sqrt(np.mean((run_series.friction - predicted)[used] ** 2)))
+    reduced = thinned(run_series.time_s, columns, stretch_of(run_series.time_s, span, pixels))
+    return {"rms": rms, **{k: listed(v, 11 if k == "time_s" else 6) for k, v in reduced.items()}}
 
 
 def signature(

@@ -55,7 +55,14 @@ def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
         lines.append(f"jbf diagnose {files} --law {law} --out model.toml --report report.html")
     else:
         effects = f" --effects {','.join(node['effects'])}" if node["effects"] else ""
-        lines.append(f"jbf fit {files} --law {node['law']}{effects} --out model.toml")
+        options = "".join(
+            f" --{option} {shlex.quote(f'{name}={value!r}')}"
+            for option, key in (("fix", "fixed"), ("start", "start"))
+            for name, value in node.get("settings", {}).get(key, {}).items()
+        )
+        if node.get("settings", {}).get("bounds"):
+            lines.append("# bounds are available in Python only")
+        lines.append(f"jbf fit {files} --law {node['law']}{effects}{options} --out model.toml")
     return "\n".join(lines)
 
 
@@ -81,7 +88,10 @@ def python(node: Mapping[str, Any] | None, steps: Steps) -> str:
         lines.append(f"found = jbf.diagnose(rig, runs{law})")
     else:
         effects = f", {list(node['effects'])!r}" if node["effects"] else ""
-        lines.append(f"found = jbf.fit(rig, runs{effects}, law={node['law']!r})")
+        settings = "".join(
+            f", {key}={value!r}" for key, value in node.get("settings", {}).items() if value
+        )
+        lines.append(f"found = jbf.fit(rig, runs{effects}, law={node['law']!r}{settings})")
     return "\n".join([*lines, "print(found.summary())", 'found.model.save("model.toml")'])
 
 

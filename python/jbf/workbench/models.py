@@ -65,6 +65,10 @@ class Models:
         self.node(number)
         self.compared = [other for other in self.compared if other != number] + [number] * on
 
+    def label(self, number: int, name: str, note: str) -> None:
+        """Set the name and the note of a model; empty texts remove them."""
+        self.node(number).update(name=name.strip(), note=note.strip())
+
     def undo(self) -> int | None:
         """Make the parent of the current model the current one; the model stays in the tree."""
         undone, parent = [*self.undone, int(self.node()["id"])], self.node()["parent"]

@@ -23,7 +23,7 @@ from jbf.workbench.jobs import Ending, Jobs
 from jbf.workbench.models import Models
 from jbf.workbench.reading import Readings
 from jbf.workbench.source_cache import SourceCache
-from jbf.workbench.work import Kind, Order
+from jbf.workbench.work import Kind, Order, Settings
 
 
 class Session:
@@ -115,8 +115,14 @@ class Session:
         self.law = law
         self.changed()
 
-    def begin(self, kind: Kind, effects: Sequence[str], parent: int | None) -> None:
-        """Start a fit (`round`), a diagnosis, or the comparison of a model without records.
+    def begin(
+        self,
+        kind: Kind,
+        effects: Sequence[str],
+        parent: int | None,
+        settings: Settings | None = None,
+    ) -> None:
+        """Start a fit with tests of candidates (`round`), a `fit` with settings, or a diagnosis.
 
         Raises
         ------
@@ -128,10 +134,13 @@ class Session:
             law = self.law if parent is None else str(self.models.node(parent)["law"])
             for name in effects:
                 find_effect(name)
-            if kind == "round" and law == AUTO:
+            if kind != "diagnose" and law == AUTO:
                 law = default_law(bench.rig)
             place = self._new_place()
-            order = Order(kind, bench.rig, bench.used_runs(), place, law, effects=tuple(effects))
+            order = Order(
+                kind, bench.rig, bench.used_runs(), place, law, effects=tuple(effects),
+                settings=settings or Settings(),
+            )  # fmt: skip
             words = _words(kind, law, effects)
 
             numbers: list[int] = []
@@ -231,7 +240,8 @@ class Session:
     ) -> None:
         """Handle the end of a job: add its model, or report its error."""
         if ending == "done":
-            self._add_model(answer, parent, "diagnosed: ", law, place)
+            how = "diagnosed: " if "diagnosis" in answer else "set: "
+            self._add_model(answer, parent, how, law, place)
             self.say("done", f"{words}: done")
         elif ending == "stopped" and answer:
             self._add_model({**answer, "trials": []}, parent, "stopped at: ", law, place)

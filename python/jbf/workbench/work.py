@@ -8,9 +8,9 @@ from __future__ import annotations
 import _thread
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal
@@ -20,7 +20,7 @@ from jbf.comparison.comparison import Comparison
 from jbf.diagnosis import diagnose
 from jbf.diagnosis.manual_round import manual_round
 from jbf.errors import JbfError, Stopped
-from jbf.estimation.fit import Fit
+from jbf.estimation.fit import Fit, fit
 from jbf.models.model import Model
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
@@ -36,9 +36,47 @@ from jbf.workbench.answers import (
     write_records,
 )
 
-Kind = Literal["round", "diagnose", "compare"]
+Kind = Literal["round", "fit", "diagnose", "compare"]
 STOP = "stop"
 """Message of the server that stops the job of a process."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Choices of the user for the parameters of a fit, by parameter name.
+
+    Attributes
+    ----------
+    start, fixed
+        Starting values, and values that are held fixed.
+    bounds
+        Pairs of lower and upper bound.
+    """
+
+    start: Mapping[str, float] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, content: Mapping[str, Any]) -> Settings:
+        """Settings from JSON data; values that are not numbers raise a `ValueError`."""
+        numbers = {
+            key: {str(name): float(value) for name, value in content.get(key, {}).items()}
+            for key in ("start", "fixed")
+        }
+        bounds = {
+            str(name): (float(low), float(high))
+            for name, (low, high) in content.get("bounds", {}).items()
+        }
+        return cls(numbers["start"], numbers["fixed"], bounds)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON data of the settings."""
+        return {
+            "start": dict(self.start),
+            "fixed": dict(self.fixed),
+            "bounds": {name: list(ends) for name, ends in self.bounds.items()},
+        }
 
 
 @dataclass(frozen=True)
@@ -48,8 +86,8 @@ class Order:
     Attributes
     ----------
     kind
-        `round` fits the given effects and tests every other; `diagnose` runs all rounds; `compare`
-        compares an unchanged model.
+        `round` fits the given effects and tests every other; `fit` only fits them, with `settings`;
+        `diagnose` runs all rounds; `compare` compares an unchanged model.
     rig, runs
         The rig, and the runs to use.
     folder
@@ -58,6 +96,8 @@ class Order:
         Base law, definition of its film's time constant, and effects.
     model
         Path of the model file to compare.
+    settings
+        Starting values, fixed values and bounds of parameters by name, for a `fit`.
     """
 
     kind: Kind
@@ -68,6 +108,7 @@ class Order:
     clock: Clock = "journal"
     effects: tuple[str, ...] = ()
     model: Path | None = None
+    settings: Settings = Settings()
 
 
 def main(connection: Connection, order: Order) -> None:
@@ -129,10 +170,10 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
         stop_requested.clear()
 
 
-def best_so_far(fit: Fit, order: Order) -> Answer:
+def best_so_far(best: Fit, order: Order) -> Answer:
     """Result of a job that was stopped, from its best fit."""
-    compared = compare(fit.model, order.runs)
-    return {**of_model(compared), **of_fit(fit), **write_records(compared, order.folder)}
+    compared = compare(best.model, order.runs)
+    return {**of_model(compared), **of_fit(best), **write_records(compared, order.folder)}
 
 
 def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
@@ -141,15 +182,24 @@ def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
         assert order.model is not None
         compared = compare(Model.load(order.model), order.runs)
         return {**of_model(compared), **write_records(compared, order.folder)}
+    if order.kind == "fit":
+        chosen = order.settings
+        fitted = fit(
+            order.rig, order.runs, order.effects, law=order.law, clock=order.clock,
+            start=chosen.start, fixed=chosen.fixed, bounds=chosen.bounds,
+        )  # fmt: skip
+        compared = compare(fitted.model, order.runs)
+        answer = {**of_model(compared), **of_fit(fitted), **write_records(compared, order.folder)}
+        return {**answer, "trials": [], "settings": chosen.to_dict()}
     if order.kind == "round":
 
-        def fitted_as(fit: Fit, comparison: Comparison) -> None:
+        def fitted_as(found: Fit, comparison: Comparison) -> None:
             """Send the fitted model to the page before the candidate effects are tested."""
             if part is not None:
                 part(
                     {
                         **of_model(comparison),
-                        **of_fit(fit),
+                        **of_fit(found),
                         **write_records(comparison, order.folder),
                     }
                 )

@@ -186,6 +186,36 @@ def test_views_have_no_accessibility_faults_in_light_and_dark(
             assert faults == [], (theme, number)
 
 
+def test_edited_parameter_is_drawn_fixed_fitted_and_compared(
+    opened: tuple[Page, Messages],
+) -> None:
+    page, _ = opened
+    enter(page, 3)
+    page.fill("[data-key=value-F_c]", "9")
+    page.wait_for_selector("""[data-drawn='{"F_c":9}'] canvas""")
+    page.wait_for_selector("text=/with the edited values: RMS/")
+    page.check("[data-key=fix-F_c]")
+    page.fill("[data-key=upper-F_v]", "30")
+    page.click("[data-key=refit]")
+    page.wait_for_selector("[data-key=model-2]")
+    page.wait_for_selector("[data-key=cancel]", state="detached")
+    assert page.input_value("[data-key=value-F_c]") == "9"
+    assert float(page.input_value("[data-key=value-F_v]")) <= 30.0
+    # Both models in one table and in one plot; name, undo and redo.
+    page.fill("[data-key=model-name]", "nine newtons")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("[data-key=model-2] >> text=nine newtons")
+    page.check("[data-key=beside-1]")
+    page.wait_for_selector("[data-key=side-by-side] >> text=nine newtons")
+    enter(page, 2)
+    page.wait_for_selector(".u-legend >> text=coulomb")
+    page.keyboard.press("z")
+    page.wait_for_selector("[data-key=model-1][aria-pressed=true]")
+    page.keyboard.press("y")
+    page.wait_for_selector("[data-key=model-2][aria-pressed=true]")
+    page.click("[data-key=model-1]")
+
+
 DELAYED = """() => {
   const plain = window.fetch;
   window.fetch = async (...request) => {

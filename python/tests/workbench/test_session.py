@@ -1,6 +1,8 @@
 """A session without a browser: open, fit, add an effect, cancel, save, resume."""
 
+import json
 from collections.abc import Iterator
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +14,13 @@ import jbf
 from conftest import NOISE_N
 from jbf.cli import main
 from jbf.errors import InputError
-from jbf.workbench import saved_files
+from jbf.models.catalogue import built_in
+from jbf.workbench import effect_views, saved_files
+from jbf.workbench.channels import channel, channels
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import FILE, load, save
+from jbf.workbench.work import Settings
 from starlette.testclient import TestClient
 from workbench_parts import wait_until, wait_until_idle
 
@@ -199,6 +204,72 @@ def test_model_selected_during_a_comparison_is_compared_later(fitted: Session) -
     wait_until(lambda: again.records(1) is not None)
     assert again.records(2) is not None
     again.close()
+
+
+def test_fit_with_settings_keeps_fixed_values_and_is_the_command_that_is_shown(
+    fitted: Session,
+) -> None:
+    settings = Settings(fixed={"coulomb_drag.F_d": 1.5}, bounds={"gamma": (1.0, 300.0)})
+    fitted.begin("fit", ["coulomb_drag"], 2, settings)
+    wait_until_idle(fitted)
+    node = fitted.models.node()
+    assert node["parameters"]["coulomb_drag.F_d"]["value"] == 1.5
+    assert node["rms"] > fitted.models.node(2)["rms"]
+    assert node["settings"]["bounds"] == {"gamma": [1.0, 300.0]}
+    assert "--fix coulomb_drag.F_d=1.5" in fitted.to_dict()["command"]
+    fitted.show(2)
+    del fitted.models.nodes[node["id"]]
+
+
+def test_undone_model_is_restored_by_redo_until_another_is_shown(fitted: Session) -> None:
+    fitted.show(2)
+    fitted.undo()
+    assert fitted.models.current == 1
+    assert fitted.to_dict()["can_redo"]
+    fitted.redo()
+    assert fitted.models.current == 2
+    fitted.undo()
+    fitted.show(None)
+    with pytest.raises(InputError, match="no model was undone"):
+        fitted.redo()
+
+
+def test_error_of_edited_parameters_is_least_at_the_estimates(fitted: Session) -> None:
+    estimate = fitted.models.node(2)["parameters"]["coulomb_drag.F_d"]["value"]
+    errors = [
+        effect_views.edited(
+            fitted, 2, {"coulomb_drag.F_d": times * estimate}, "stopgo", (None, None), 200
+        )["rms"]
+        for times in (0.5, 1.0, 1.5)
+    ]
+    assert errors[1] == min(errors)
+    with pytest.raises(InputError, match="is not a parameter"):
+        effect_views.edited(fitted, 2, {"nothing": 1.0}, "stopgo", (None, None), 200)
+
+
+@pytest.mark.parametrize("transform", ["value", "derivative", "spectrum"])
+def test_channel_is_drawn_as_recorded_derivative_or_spectrum(
+    fitted: Session, transform: str
+) -> None:
+    names = channels(fitted, 2, "sine_w2.0")
+    assert names["residual_n"] == names["friction_n"] == "N"
+    curve = channel(fitted, 2, "sine_w2.0", "velocity_m_s", transform, (None, None), 4000)
+    x, y = np.array(curve["x"]), np.array(curve["y"])
+    if transform == "spectrum":
+        # The run is a sine of 2 rad/s.
+        assert x[np.argmax(y)] == pytest.approx(2.0 / (2.0 * np.pi), abs=2.0 * x[0])
+    if transform == "derivative":
+        run = fitted.on_bench().run("sine_w2.0")
+        inside = slice(20, -20)
+        expected = np.gradient(run.velocity, run.time_s)
+        assert np.corrcoef(y[inside], expected[inside])[0, 1] > 0.7
+
+
+def test_every_effect_of_the_catalogue_has_a_shape() -> None:
+    file = files("jbf.workbench") / "static" / "effect_shapes.json"
+    shapes = json.loads(file.read_text(encoding="utf-8"))
+    assert set(shapes) == set(built_in())
+    assert {np.shape(shape) for shape in shapes.values()} == {(2, 96)}
 
 
 @pytest.mark.parametrize(

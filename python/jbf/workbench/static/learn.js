@@ -4,25 +4,28 @@ import { showCandidates } from "./candidates.js";
 import { Chart, curve } from "./chart.js";
 import { h, number, put } from "./dom.js";
 import { showLedger } from "./ledger.js";
-import { correlations, parameters, power } from "./tables.js";
+import { about, Parameters, sideBySide } from "./parameters.js";
+import { correlations, power } from "./tables.js";
 
 export class LearnSection {
   constructor(page, place) {
     this.page = page;
     this.head = h("div", { class: "row" }); this.verdict = h("p", { class: "verdict" });
-    this.ledger = h("div"); this.ranks = h("div"); this.values = h("div"); this.more = h("div");
+    this.ledger = h("div"); this.ranks = h("div"); this.more = h("div"); this.about = h("div"); this.beside = h("div"); this.shared = h("div");
+    const values = h("section", {}, h("h2", {}, "Parameters"));
     this.sketch = h("div", { class: "plot" }); this.sketched = h("p", { class: "faint" });
-    place.append(this.head, this.verdict,
+    place.append(this.head, this.about, this.verdict, this.beside,
       h("div", { class: "two wide" },
         h("section", {}, h("h2", {}, "Error by step"), this.ledger),
         h("section", {}, h("h2", {}, "Predicted contribution of the selected effect"), this.sketched, this.sketch)),
       h("section", {}, h("h2", {}, "What could be missing"), this.ranks),
-      h("h2", {}, "Parameters"), this.values, this.more);
+      values, this.shared, this.more);
+    this.values = new Parameters(page, values);
   }
 
   update(before) {
     const { state } = this.page, node = this.page.model;
-    const now = JSON.stringify([state.current, state.nodes.length, state.law, state.rig, state.runs.length, Boolean(state.job), node?.records, Boolean(node?.trials)]);
+    const now = JSON.stringify([state.current, state.compared, state.nodes.map((n) => [n.name, n.note]), state.law, state.rig, state.runs.length, Boolean(state.job), node?.records, Boolean(node?.trials)]);
     if (!before || now !== this.was) { this.was = now; this.show(); }
   }
 
@@ -38,7 +41,9 @@ export class LearnSection {
       h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"));
     put(this.verdict, node?.diagnosis ? node.diagnosis.sentence : "");
     showLedger(page, this.ledger); showCandidates(page, this.ranks);
-    put(this.values, node ? h("div", { class: "two" }, parameters(node), node.correlations ? correlations(node.correlations) : h("div")) : h("p", { class: "faint" }, "None yet."));
+    about(page, this.about); sideBySide(page, this.beside);
+    this.values.show(this.model !== node?.id); this.model = node?.id;
+    put(this.shared, node?.correlations ? correlations(node.correlations) : null);
     put(this.more, node?.diagnosis ? this.diagnosis_details(node.diagnosis) : null,
       node?.power?.length ? h("details", { open: Boolean(node.diagnosis) }, h("summary", { "data-key": "power" }, "Detection limits of these runs (80 % power)"), power(node.power)) : null,
       node?.diagnosis ? h("details", {}, h("summary", { "data-key": "words" }, "Summary"), h("pre", {}, node.diagnosis.summary)) : null);

@@ -1,23 +1,13 @@
-// Tables of a model: parameters with intervals, correlations, power.
-import { colour, h, number } from "./dom.js";
+// Tables of a model: correlations, power.
+import { colour, h } from "./dom.js";
 
 const head = (words) => h("thead", {}, h("tr", {}, words.map((w, i) => h("th", { class: i ? "n" : "" }, w))));
-
-export function parameters(node) {
-  const rows = Object.entries(node.parameters).map(([name, p]) => {
-    const held = p.held || p.stderr === null || p.stderr === undefined;
-    const half = 1.96 * p.stderr;
-    return h("tr", {}, h("td", {}, name), h("td", { class: "n" }, `${number(p.value, 4)} ${p.unit ?? ""}`),
-      h("td", { class: held ? "faint" : "n" }, held ? `held${p.note ? `: ${p.note}` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`));
-  });
-  return h("table", {}, head(["parameter", "value", "95 % interval"]), h("tbody", {}, rows));
-}
 
 // Shaded by their size; what two parameters share almost wholly stands out.
 export function correlations({ names, matrix }) {
   if (names.length < 2) return h("div");
   const short = names.map((n) => n.split(".").at(-1));
-  return h("div", {}, h("table", { class: "matrix" }, h("caption", {}, "Correlations of the estimates"),
+  return h("div", { class: "scroll" }, h("table", { class: "matrix" }, h("caption", {}, "Correlations of the estimates"),
     h("thead", {}, h("tr", {}, h("th", {}), short.map((n, i) => h("th", { class: "n", title: names[i] }, n)))),
     h("tbody", {}, matrix.map((row, i) => h("tr", {}, h("th", { title: names[i] }, short[i]), row.map((v, k) => {
       const cell = h("td", { class: "n" }, k > i ? "" : v.toFixed(2));
@@ -28,6 +18,6 @@ export function correlations({ names, matrix }) {
 }
 
 export function power(rows) {
-  return h("table", {}, head(["effect", "detectable from", "of friction", "distinct from", "confounded with"]),
-    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.found, p.share, p.alone, p.like].map((words) => h("td", { class: "n" }, words))))));
+  return h("div", { class: "scroll" }, h("table", {}, head(["effect", "detectable from", "of friction", "distinct from", "confounded with"]),
+    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.found, p.share, p.alone, p.like].map((words) => h("td", { class: "n" }, words)))))));
 }

@@ -29,6 +29,7 @@ SCRIPTS = {
     "docs/pictures.py": ("images/error_falling.png", "images/plot/*.svg"),
     "docs/control_pictures.py": ("images/control_*.png",),
     "docs/reduction.py": ("images/reduction.png",),
+    "docs/effect_shapes.py": ("../python/jbf/workbench/static/effect_shapes.json",),
     "docs/workbench_pictures.py": ("images/workbench_*.png",),
     "docs/site/commands.py": ("reference/commands.md",),
     "docs/policy.py": ("reference/policy.md",),

@@ -100,3 +100,27 @@ def examine_runs(address: str) -> Iterator[tuple[Page, Messages]]:
             yield page, messages
         finally:
             chromium.close()
+
+
+AXE = """async () => {
+  const found = await axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"] });
+  const words = (v) => `${v.impact} ${v.id}: ${v.nodes.slice(0, 3).map((n) => n.target)}`;
+  return [found.passes.length, found.violations.map(words)];
+}"""
+
+
+def axe_source() -> str | None:
+    """Source of axe-core from axe-playwright-python; None if it is not installed."""
+    try:
+        import axe_playwright_python as package
+    except ImportError:
+        return None
+    return (Path(str(package.__file__)).parent / "axe.min.js").read_text(encoding="utf-8")
+
+
+def accessibility_faults(page: Page, source: str) -> list[str]:
+    """Violations of WCAG 2.1 A and AA that axe-core finds on a page."""
+    page.evaluate(source)
+    passes, faults = page.evaluate(AXE)
+    assert passes > 8, "axe-core checked nothing"
+    return list(faults)

@@ -10,7 +10,15 @@ from starlette.responses import Response
 
 from jbf.errors import InputError
 from jbf.workbench import channels as any_channel
-from jbf.workbench import choices, effect_views, importer, samples, saved_files, views
+from jbf.workbench import (
+    choices,
+    effect_views,
+    importer,
+    samples,
+    saved_files,
+    session_bundle,
+    views,
+)
 from jbf.workbench.session import Session
 from jbf.workbench.work import Settings
 
@@ -125,6 +133,12 @@ def open_campaign(session: Session, parameters: Parameters) -> Any:
 def sample(session: Session, parameters: Parameters) -> Any:
     """Open a simulated sample in the session."""
     samples.open_sample(session, str(parameters["name"]))
+    return {}
+
+
+def open_session(session: Session, parameters: Parameters) -> Any:
+    """Continue a session that was saved as one file."""
+    session_bundle.open_bundle(session, str(parameters["file"]))
     return {}
 
 
@@ -266,8 +280,13 @@ def keep(session: Session, parameters: Parameters) -> Any:
 
 
 def text(session: Session, parameters: Parameters) -> Any:
-    """Content of a file that `keep` would write, for a download."""
-    name, content = saved_files.text_of(session, str(parameters["what"]))
+    """Content of a file that `keep` would write, or the session as one file, for a download."""
+    name: str
+    content: str | bytes
+    if parameters["what"] == "bundle":
+        name, content = "session.zip", session_bundle.bundle(session)
+    else:
+        name, content = saved_files.text_of(session, str(parameters["what"]))
     disposition = f"attachment; filename*=UTF-8''{quote(name)}"
     # Never displayed as a page of this server: a report is opened from disk.
     return Response(content, headers={"content-disposition": disposition}, media_type="text/plain")
@@ -290,6 +309,7 @@ COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "brush": brush,
     "open": open_campaign,
     "sample": sample,
+    "open_session": open_session,
     "look": look,
     "try": try_map,
     "import": import_files,

@@ -19,7 +19,7 @@ _LARGEST_TOML = 1 << 20
 _RIG = {"bearing", "lubricant", "load", "drive"}
 _RECORDINGS = {".mat", ".parquet", ".pq", ".tdms", ".mf4", ".mdf", ".mcap", ".bag", ".h5", ".hdf5",
                ".xlsx", ".txt", ".tsv", ".dat", ".log", ".wpilog"}  # fmt: skip
-_UPLOADS = _RECORDINGS | {".csv", ".toml"}
+_UPLOADS = _RECORDINGS | {".csv", ".toml", ".zip"}
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Folder:
             endings = ", ".join(sorted(_UPLOADS))
             raise InputError(
                 file=quoted(name),
-                problem="is not a recording, rig or map",
+                problem="is not a recording, rig, map or session",
                 remedy=f"give {endings}",
             )
         path = self.path(name)
@@ -94,13 +94,14 @@ class Folder:
         return path
 
     def listing(self) -> dict[str, Any]:
-        """Campaigns (a rig and runs in one folder), rigs, maps, models and recordings by kind."""
+        """Campaigns (a rig and runs in one folder) and files by kind; sessions are archives."""
         names_by_kind: dict[str, Any] = {
             "rigs": [],
             "maps": [],
             "models": [],
             "csv": [],
             "other": [],
+            "sessions": [],
         }
         for number, path in enumerate(self._walk()):
             if number == MOST_FILES:
@@ -113,6 +114,8 @@ class Folder:
                     names_by_kind[kind].append(name)
             elif suffix == ".csv":
                 names_by_kind["csv"].append(name)
+            elif suffix == ".zip":
+                names_by_kind["sessions"].append(name)
             elif suffix in _RECORDINGS:
                 names_by_kind["other"].append(name)
         names_by_kind["campaigns"] = [

@@ -16,17 +16,17 @@ FILE = "workbench.json"
 FORMAT = "jbf workbench 1"
 
 
-def save(session: Session) -> Path:
-    """Write the session file into the session's folder, and return its path.
+def content_of(session: Session) -> dict[str, Any]:
+    """Content of the session file: names of rig and runs, trims, and all models.
 
     Raises
     ------
     InputError
-        No rig is open, or the file cannot be written.
+        No rig is open.
     """
     with session.lock:
         bench, models = session.on_bench(), session.models
-        content = {
+        return {
             "format": FORMAT,
             "rig": bench.rig_name,
             "runs": list(bench.run_names),
@@ -38,8 +38,18 @@ def save(session: Session) -> Path:
                 {k: v for k, v in node.items() if k != "records"} for node in models.nodes.values()
             ],
         }
-        path = session.folder.path(FILE)
-        write_text(path, json.dumps(content, indent=1))
+
+
+def save(session: Session) -> Path:
+    """Write the session file into the session's folder, and return its path.
+
+    Raises
+    ------
+    InputError
+        No rig is open, or the file cannot be written.
+    """
+    path = session.folder.path(FILE)
+    write_text(path, json.dumps(content_of(session), indent=1))
     return path
 
 
@@ -61,10 +71,27 @@ def load(session: Session) -> bool:
         raise InputError(
             file=path, row=error.lineno, problem="is not valid JSON", remedy=remedy
         ) from None
+    restore(session, checked(content, path), path)
+    return True
+
+
+def checked(content: object, path: Path) -> dict[str, Any]:
+    """Return the content of a session file; an InputError if it has another format."""
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(
             file=path, problem=f"does not have the format {FORMAT!r}", remedy="remove it"
         )
+    return content
+
+
+def restore(session: Session, content: dict[str, Any], path: Path) -> None:
+    """Open the rig, the runs and the models of a session file, read from `path`.
+
+    Raises
+    ------
+    InputError
+        The content is not complete, or names files that do not exist.
+    """
     try:
         bench = Bench.read(session.folder, str(content["rig"]), list(map(str, content["runs"])))
         for name, span in content["trims"].items():
@@ -83,11 +110,10 @@ def load(session: Session) -> bool:
     if current is not None:
         session.show(int(current))
     session.say("done", f"the session of {path.name} was restored")
-    return True
 
 
 def _node(node: dict[str, Any]) -> dict[str, Any]:
     """Check that the entry of a model has all keys that the page requires, and return it."""
-    for key in ("id", "words", "law", "effects", "model", "rms"):
+    for key in ("id", "words", "law", "effects", "model", "rms", "noise_rms"):
         node[key]
     return node

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
-from workbench_walk import examine_runs, served, why_not
+from workbench_walk import accessibility_faults, axe_source, examine_runs, served, why_not
 
 pytestmark = pytest.mark.skipif(why_not() is not None, reason=str(why_not()))
 
@@ -44,6 +44,7 @@ def test_ros_joint_log_leads_to_a_verdict_with_one_click(tmp_path: Path) -> None
         assert messages.complaints == messages.outside == []
 
 
+@pytest.mark.extended
 def test_questions_of_an_import_are_answered_by_clicks(tmp_path: Path) -> None:
     t = np.arange(0.0, 8.0, 0.01)
     rows = np.column_stack([1000 * t, 40 * np.sin(2 * t), 0.3 * np.sign(np.cos(2 * t)), 0 * t])
@@ -53,6 +54,9 @@ def test_questions_of_an_import_are_answered_by_clicks(tmp_path: Path) -> None:
     with served(tmp_path) as address, examine_runs(address) as (page, messages):
         page.click("[data-key='pick-odd.csv']")
         page.click("[data-key=import-chosen]")
+        page.wait_for_selector("[data-point]")
+        if (source := axe_source()) is not None:
+            assert accessibility_faults(page, source) == []
         page.click("[data-key=answer-time_s-ms]")
         page.click("[data-key=answer-angle_rad-deg]")
         page.click("[data-key=answer-torque_n_m-torque]")
@@ -65,9 +69,12 @@ def test_questions_of_an_import_are_answered_by_clicks(tmp_path: Path) -> None:
         assert messages.complaints == messages.outside == []
 
 
+@pytest.mark.extended
 def test_sample_opens_by_one_click_on_the_empty_page(tmp_path: Path) -> None:
     with served(tmp_path) as address, examine_runs(address) as (page, messages):
-        assert page.locator(".drop.large").count() + page.locator("#runs").count() >= 1
+        page.wait_for_selector(".drop.large")
+        if (source := axe_source()) is not None:
+            assert accessibility_faults(page, source) == []
         page.click("[data-key=sample-axis]")
         page.wait_for_selector("#runs [data-key=run-run_1]")
         page.wait_for_selector("#banner [data-key=next-diagnose]")

@@ -12,7 +12,14 @@ import pytest
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
-from workbench_walk import Messages, examine_runs, served, why_not
+from workbench_walk import (
+    Messages,
+    accessibility_faults,
+    axe_source,
+    examine_runs,
+    served,
+    why_not,
+)
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -21,6 +28,7 @@ pytestmark = pytest.mark.skipif(why_not() is not None, reason=str(why_not()))
 
 DRIVE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
 VIEWS = (1, 2, 3, 4)
+OTHER_PLOTS = ("plane", "stribeck", "runs_by_speed", "residual")
 
 
 def write_campaign(folder: Path, names: tuple[str, ...]) -> None:
@@ -115,7 +123,7 @@ def test_candidates_have_a_sentence_a_shape_and_a_description(
     page.wait_for_selector("dialog", state="detached")
 
 
-@pytest.mark.parametrize("width", [390, 800])
+@pytest.mark.parametrize("width", [390, pytest.param(800, marks=pytest.mark.extended)])
 def test_no_view_scrolls_sideways_on_a_narrow_screen(
     opened: tuple[Page, Messages], width: int
 ) -> None:
@@ -145,7 +153,10 @@ def test_unused_samples_and_any_channel_can_be_shown(opened: tuple[Page, Message
     page.wait_for_selector("[data-drawn='friction_n derivative']")
 
 
-@pytest.mark.parametrize("plot", ["force", "plane", "stribeck", "runs_by_speed"])
+@pytest.mark.parametrize(
+    "plot",
+    ["force", *(pytest.param(p, marks=pytest.mark.extended) for p in OTHER_PLOTS)],
+)
 def test_picture_and_data_of_a_plot_can_be_saved(
     opened: tuple[Page, Messages], plot: str, tmp_path: Path
 ) -> None:
@@ -162,30 +173,20 @@ def test_picture_and_data_of_a_plot_can_be_saved(
     assert {len(row) for row in rows} == {len(header)}
 
 
-AXE = """async () => {
-  const found = await axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"] });
-  const words = (v) => `${v.impact} ${v.id}: ${v.nodes.slice(0, 3).map((n) => n.target)}`;
-  return [found.passes.length, found.violations.map(words)];
-}"""
-
-
-def test_views_have_no_accessibility_faults_in_light_and_dark(
-    opened: tuple[Page, Messages],
-) -> None:
-    axe = pytest.importorskip("axe_playwright_python", reason="pip install axe-playwright-python")
-    source = (Path(axe.__file__).parent / "axe.min.js").read_text(encoding="utf-8")
+@pytest.mark.parametrize("theme", ["light", pytest.param("dark", marks=pytest.mark.extended)])
+def test_views_have_no_accessibility_faults(opened: tuple[Page, Messages], theme: str) -> None:
+    source = axe_source()
+    if source is None:
+        pytest.skip("this test needs: pip install axe-playwright-python")
     page, _ = opened
-    for theme in ("light", "dark"):
-        if page.evaluate("document.documentElement.dataset.theme") != theme:
-            page.click("[data-key=theme]")
-        for number in VIEWS:
-            enter(page, number)
-            page.evaluate(source)
-            passes, faults = page.evaluate(AXE)
-            assert passes > 10
-            assert faults == [], (theme, number)
+    if page.evaluate("document.documentElement.dataset.theme") != theme:
+        page.click("[data-key=theme]")
+    for number in VIEWS:
+        enter(page, number)
+        assert accessibility_faults(page, source) == [], number
 
 
+@pytest.mark.extended
 def test_edited_parameter_is_drawn_fixed_fitted_and_compared(
     opened: tuple[Page, Messages],
 ) -> None:

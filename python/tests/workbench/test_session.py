@@ -1,6 +1,7 @@
 """A session without a browser: open, fit, add an effect, cancel, save, resume."""
 
 import json
+import zipfile
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
@@ -15,14 +16,14 @@ from conftest import NOISE_N
 from jbf.cli import main
 from jbf.errors import InputError
 from jbf.models.catalogue import built_in
-from jbf.workbench import effect_views, saved_files
+from jbf.workbench import effect_views, saved_files, session_bundle
 from jbf.workbench.channels import channel, channels
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import FILE, load, save
 from jbf.workbench.work import Settings
 from starlette.testclient import TestClient
-from workbench_parts import wait_until, wait_until_idle
+from workbench_parts import client_of, wait_until, wait_until_idle
 
 
 @pytest.fixture(scope="module")
@@ -340,3 +341,35 @@ def test_invalid_api_requests_are_refused_in_one_line(client: TestClient, loaded
     assert client.post("/api/open", content=b"[]").status_code == 400
     unknown = client.post("/api/fit", json={"effects": ["presliddng"]})
     assert "did you mean" in unknown.json()["error"]
+
+
+def test_session_as_one_file_continues_in_another_folder(fitted: Session, tmp_path: Path) -> None:
+    fitted.on_bench().trim("stopgo", (1.0, 20.0))
+    fitted.models.label(2, "with drag", "the seal")
+    archive = session_bundle.bundle(fitted)
+    (tmp_path / "saved.zip").write_bytes(archive)
+    session = Session(Folder.of(tmp_path))
+    answer = client_of(session).post("/api/open_session", json={"file": "saved.zip"})
+    assert answer.status_code == 200
+    wait_until_idle(session)
+    assert session.models.ledger() == fitted.models.ledger()
+    assert session.models.node(2)["note"] == "the seal"
+    assert session.on_bench().trims == {"stopgo": (1.0, 20.0)}
+    assert (tmp_path / "saved" / "stopgo.csv").is_file()
+    session.close()
+    fitted.models.label(2, "", "")
+
+
+@pytest.mark.parametrize("name", ["../outside.csv", "/etc/passwd", "a/b.csv", "run.py", "c\\d.csv"])
+def test_session_file_that_names_another_place_is_refused(tmp_path: Path, name: str) -> None:
+    content = {"format": "jbf workbench 1", "rig": "rig.toml", "runs": [name]}
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    with zipfile.ZipFile(folder / "bad.zip", "w") as archive:
+        archive.writestr("workbench.json", json.dumps(content))
+        archive.writestr("rig.toml", "")
+        archive.writestr(name, "time_s\n")
+    with pytest.raises(InputError):
+        session_bundle.open_bundle(Session(Folder.of(folder)), "bad.zip")
+    assert [path.name for path in folder.iterdir()] == ["bad.zip"]
+    assert [path.name for path in tmp_path.iterdir()] == ["folder"]

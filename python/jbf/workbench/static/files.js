@@ -23,6 +23,7 @@ export class Files {
       campaigns.length ? h("section", {}, h("h2", {}, some ? "Open another rig with its runs" : "Rigs and their runs in this folder"),
         h("ul", { class: "plain" }, campaigns.map((c) => h("li", {},
           h("button", { "data-key": `open-${c.rig}`, "aria-label": `open ${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"), ` ${c.rig}, ${c.runs.length} run${c.runs.length === 1 ? "" : "s"}`)))) : null,
+      found.sessions.length ? h("section", {}, h("h2", {}, "Saved sessions"), h("ul", { class: "plain" }, found.sessions.map((name) => h("li", {}, h("button", { "data-key": `session-${name}`, "aria-label": `open ${name}`, onclick: () => this.page.do("open_session", { file: name }).then((ok) => ok && this.done()) }, "Open"), ` ${name}`)))) : null,
       this.recordings(found), this.picker(found, open),
       found.more ? h("p", { class: "faint" }, "More files are not shown: choose a smaller folder.") : null,
     ];
@@ -71,7 +72,9 @@ export class Files {
       try { names.push((await upload(file, (share) => this.page.say(`Copying ${file.name}: ${Math.round(100 * share)} %`, "doing"))).file); } catch (error) { this.page.say(error.message); break; }
     }
     this.picked = new Set(names);
-    if (names.length) { this.page.say("", ""); await this.look(names); } else await this.list();
+    const session = names.find((name) => name.endsWith(".zip"));
+    if (session) { if (await this.page.do("open_session", { file: session })) this.done(); else await this.list(); }
+    else if (names.length) { this.page.say("", ""); await this.look(names); } else await this.list();
   }
 
   // What the columns are, in a form that can be changed until the numbers are right.

@@ -86,7 +86,7 @@ export class ImportForm {
         h("tbody", {}, found.columns.map((column) => this.row(column)))), this.formulas(), this.rig())),
       this.part("map-text", "Map as text (formulas, cuts, clocks)", text));
     if (answer?.curves) this.preview(answer);
-    else put(this.plots, h("div", { class: "row" }, found.columns.filter((c) => c.shape && this.rows().some((r) => r.column === c.name)).map((c) => h("figure", {}, course(c.shape), h("figcaption", {}, `${c.name}, first rows`)))));
+    else put(this.plots, h("h3", {}, "The columns, first rows"), h("div", { class: "cards" }, found.columns.filter((c) => c.shape).map((c) => h("figure", { class: "course" }, course(c.shape), h("figcaption", {}, `${c.name}${c.unit ? ` (${c.unit})` : ""}: ${c.first[0]} …`)))));
   }
 
   part(key, words, ...content) {

@@ -3,6 +3,7 @@ import { h, put } from "./dom.js";
 
 const THINGS = [
   ["session", "Session (workbench.json)", "all models and trims; jbf workbench in this folder restores it", null],
+  ["bundle", "Session as one file (session.zip)", "with the rig and all runs; drop it on the page of any folder", "session.zip"],
   ["model", "Model (model.toml)", "for jbf predict, compare, export", "model.toml"],
   ["report", "Report (report.html)", "one page with pictures", "report.html"],
   ["rust", "Constants in Rust (model.rs)", "for a controller with jbf-core", "model.rs"],
@@ -20,12 +21,12 @@ export class KeepSection {
 
   update() {
     const { page } = this, node = page.model;
-    const there = (what) => (what === "session" || what === "trimmed" ? page.state.runs.length > 0
+    const there = (what) => (["session", "bundle", "trimmed"].includes(what) ? page.state.runs.length > 0
       : node && (what !== "next_run" || node.diagnosis?.next_run));
-    put(this.list, h("table", {}, h("tbody", {}, THINGS.map(([what, title, why, file]) => h("tr", {},
-      h("td", {}, h("button", { "data-key": `keep-${what}`, disabled: !there(what), onclick: () => this.keep(what) }, "Save in the folder")),
-      h("td", {}, file ? h("button", { "data-key": `get-${what}`, disabled: !there(what), onclick: () => this.get(what, file) }, "Download") : null),
-      h("td", {}, title), h("td", { class: "faint" }, why))))));
+    put(this.list, h("div", { class: "scroll" }, h("table", {}, h("tbody", {}, THINGS.map(([what, title, why, file]) => h("tr", {},
+      h("td", {}, what === "bundle" ? null : h("button", { "data-key": `keep-${what}`, "aria-label": `save ${title}`, disabled: !there(what), onclick: () => this.keep(what) }, "Save in the folder")),
+      h("td", {}, file ? h("button", { "data-key": `get-${what}`, "aria-label": `download ${title}`, disabled: !there(what), onclick: () => this.get(what, file) }, "Download") : null),
+      h("td", {}, title), h("td", { class: "faint" }, why)))))));
     put(this.same, page.state.command ? [h("h2", {}, node ? "Equivalent commands" : "Commands"), this.copied("command", page.state.command),
       h("h2", {}, node ? "Equivalent Python code" : "Python code"), this.copied("python", page.state.python)] : null);
   }

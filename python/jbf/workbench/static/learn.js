@@ -34,7 +34,7 @@ export class LearnSection {
   show() {
     const { page } = this, { state } = page, node = page.model, busy = Boolean(state.job) || !state.runs.length;
     this.lead();
-    const law = h("select", { "aria-label": "law", "data-key": "law", disabled: busy, onchange: (e) => page.do("law", { law: e.target.value }) },
+    const law = h("select", { class: "law", "aria-label": "law", "data-key": "law", disabled: busy, onchange: (e) => page.do("law", { law: e.target.value }) },
       state.laws.map(({ name, summary, refused }) => h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name}: ${refused ?? summary}`)));
     put(this.head, h("label", {}, "Law ", law),
       h("button", { "data-key": "fit-law", disabled: busy, onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} alone`),

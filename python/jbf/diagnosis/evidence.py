@@ -54,7 +54,7 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if _filters_motion(candidates, richer, simpler) or explains_less(candidates, richer, simpler):
+    if _filters_motion(candidates, richer, simpler):
         gain = min(gain, price)
     return gain - price
 
@@ -68,7 +68,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
         return 0.0
     if _within_steps(candidates.campaign, richer, simpler):
         return 0.0
-    if _filters_motion(candidates, richer, simpler) or explains_less(candidates, richer, simpler):
+    if _filters_motion(candidates, richer, simpler):
         return 0.0
     gain = min(likelihood_gain(richer, simpler), robust_gain(richer, simpler))
     return gain - price_of(candidates, richer.free - simpler.free)

@@ -70,7 +70,6 @@ class EffectPage(TypedDict):
     longest_step_s: float
     further_of: str | None
     unknown_start: bool
-    rust_place: str
     rust_type: str
     parameters: list[ParameterPage]
 

@@ -1,8 +1,8 @@
 //! Eccentricity along the motions of several films, integrated in the lanes of vector registers.
 
+use crate::film_path::FilmStep;
 use crate::lane::Lane;
 use crate::simd::Simd;
-use jbf_core::film_path::FilmStep;
 use jbf_core::law::journal::{Journal, SideBySide};
 use jbf_core::law::Law;
 use jbf_core::stepper::Rk4;

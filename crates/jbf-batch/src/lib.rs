@@ -24,11 +24,13 @@
 //! # Ok::<(), ParameterError>(())
 //! ```
 //!
-//! [`film_paths`] integrates a few films, each along its own motion.
+//! [`film_paths`] integrates a few films, each along its own motion. [`film_path`] stores the states
+//! of a film along a record.
 
 #![deny(missing_docs)]
 
 mod batch;
+pub mod film_path;
 mod film_paths;
 mod lane;
 mod part;

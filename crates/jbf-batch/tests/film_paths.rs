@@ -1,8 +1,8 @@
 //! Tests that film paths computed in lanes equal those computed one by one, bit for bit, with every
 //! instruction set.
 
+use jbf_batch::film_path::FilmStep;
 use jbf_batch::{film_paths, Simd};
-use jbf_core::film_path::FilmStep;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::Law;
 use jbf_core::{Bearing, Clock};

@@ -7,7 +7,9 @@
 //! cargo run --example user_law
 //! ```
 
-use jbf_core::effect::Effects;
+use jbf_core::effect::inertia::{self, Inertia};
+use jbf_core::effect::presliding::{self, Presliding};
+use jbf_core::effect::sensor_lag::{self, SensorLag};
 use jbf_core::law::Law;
 use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
 
@@ -56,22 +58,15 @@ fn main() -> Result<(), ParameterError> {
         unit_speed_m_s: 0.01,
         power: 0.1,
     };
-    let mut effects = Effects::NONE;
-    effects.set("inertia", &[2.0])?;
-    effects.set("presliding", &[1e5])?;
-    effects.set("sensor_lag", &[0.01])?;
-    let chain = Chain::round(law, effects, None);
-    let motion = |t: f64| {
-        Motion::at_rest(1.0)
-            .with_time_s(t)
-            .with_velocity_m_s(0.05 * t.sin())
-            .with_acceleration_m_s2(0.05 * t.cos())
-    };
-    let mut state = chain.start(&motion(0.0));
+    let chain = Chain::new(law)
+        .with(Inertia::new(inertia::Parameters { m_e: 2.0 })?)
+        .with(Presliding::new(presliding::Parameters { sigma: 1e5 })?)
+        .with(SensorLag::new(sensor_lag::Parameters { tau_s: 0.01 })?);
+    let mut state = chain.start(&Motion::default());
     println!("time_s,friction_n");
     for i in 1..=3000 {
         let (t, dt) = (0.002 * f64::from(i), 0.002);
-        let friction_n = chain.step(&mut state, &motion(t), dt);
+        let friction_n = chain.step_velocity(&mut state, 0.05 * t.sin(), dt);
         if i % 250 == 0 {
             println!("{t:.1},{friction_n:.3}");
         }

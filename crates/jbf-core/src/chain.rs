@@ -10,7 +10,7 @@
 //! compliant drive) uses the values of the previous step.
 
 use crate::bearing::Bearing;
-use crate::effect::{EffectSet, Effects, Resistance, Rig, Signal};
+use crate::effect::{Effect, Effects, Resistance, Rig, Signal};
 use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
@@ -35,7 +35,7 @@ pub struct Chain<T: Real, L, E = Effects<T>> {
 
 /// State of a chain in the course of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
+pub struct State<T: Real, S, E: Effect<T> = Effects<T>> {
     /// State of the friction law.
     pub law: S,
     effects: E::State,
@@ -55,7 +55,7 @@ pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
     pub reading_n: T,
 }
 
-impl<T: Real, S, E: EffectSet<T>> State<T, S, E> {
+impl<T: Real, S, E: Effect<T>> State<T, S, E> {
     /// Returns the motion of the journal, which differs from the commanded motion if the drive is
     /// compliant.
     pub fn journal(&self) -> &JournalMotion<T> {
@@ -68,24 +68,64 @@ impl<T: Real, S, E: EffectSet<T>> State<T, S, E> {
     }
 }
 
-impl<T: Real, L, E> Chain<T, L, E> {
-    /// Creates a chain from a law and effects, on the shaft of a bearing or, for `None`, on a
-    /// linear axis.
-    pub fn round(law: L, effects: E, bearing: Option<&Bearing>) -> Self {
-        let rig = Rig::on(bearing);
-        Self { law, effects, rig }
+impl<T: Real, L: Law<T>> Chain<T, L, ()> {
+    /// Creates a chain of a law without effects, on a linear axis.
+    #[must_use]
+    pub fn new(law: L) -> Self {
+        Self {
+            law,
+            effects: (),
+            rig: Rig::default(),
+        }
     }
 }
 
-impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
+impl<T: Real, L, E> Chain<T, L, E> {
+    /// Adds an effect.
+    ///
+    /// The effect acts at its own stage of the signal chain, so effects of different stages may be
+    /// added in any order. Effects of one stage act in the order in which they are added.
+    #[must_use]
+    pub fn with<F: Effect<T>>(self, effect: F) -> Chain<T, L, (E, F)> {
+        Chain {
+            law: self.law,
+            effects: (self.effects, effect),
+            rig: self.rig,
+        }
+    }
+
+    /// Replaces the effects by a set, such as the [`Effects`] selected from the catalogue by name.
+    #[must_use]
+    pub fn with_effects<F: Effect<T>>(self, effects: F) -> Chain<T, L, F> {
+        Chain {
+            law: self.law,
+            effects,
+            rig: self.rig,
+        }
+    }
+
+    /// Places the chain on the shaft of a bearing instead of a linear axis.
+    ///
+    /// On a linear axis the angle of a motion is the position, m.
+    #[must_use]
+    pub fn on(self, bearing: &Bearing) -> Self {
+        Self {
+            rig: Rig::on(Some(bearing)),
+            ..self
+        }
+    }
+}
+
+impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
     /// Returns the force that resists the drive, N per bearing: the friction, or the spring force
     /// of a compliant drive.
     #[inline]
-    pub fn felt(&self, state: &State<T, L::State, E>) -> Friction<T> {
-        if let Some(smooth_n) = self
-            .effects
-            .transmitted_n(&state.effects, &state.motion, &self.rig)
-        {
+    pub fn reaction_n(&self, state: &State<T, L::State, E>) -> Friction<T> {
+        let (states, motion) = (&state.effects, &state.motion);
+        let mut spring_n = None;
+        self.effects
+            .transmitted_n(states, motion, &self.rig, &mut spring_n);
+        if let Some(smooth_n) = spring_n {
             return Friction {
                 jump: T::ZERO,
                 smooth: smooth_n,
@@ -134,7 +174,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         let beside_n = |journal| {
             let (mut all_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
             self.effects
-                .other(&state.effects, journal, &mut all_n, &mut transmitted_n);
+                .add_friction(&state.effects, journal, &mut all_n, &mut transmitted_n);
             all_n.smooth
         };
         sliding.smooth * load_n + beside_n(&moving) - beside_n(&still)
@@ -164,7 +204,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
             state.law = law.start(motion.load_n);
         }
         self.act(law, &mut state, journal, factor, T::ZERO);
-        state.reading_n = self.effects.first(&mut state.effects, state.force_n);
+        state.reading_n = state.force_n;
+        self.effects
+            .first_reading(&mut state.effects, &mut state.reading_n);
         state
     }
 
@@ -183,7 +225,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         law.set_load(&mut state.law, to.load_n);
         let mut journal = JournalMotion::from(to);
         self.effects
-            .drive(&mut state.effects, &mut journal, &self.rig, dt_s);
+            .drive(&mut state.effects, &self.rig, &mut journal, dt_s);
         let factor = self.film_factor(state, &journal);
         let end = journal.velocity_m_s.abs() * factor;
         let factors = state.film_factor + factor;
@@ -198,14 +240,34 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         let (from, begin_n, jump_n) = (state.journal, state.force_n, state.jump_n);
         self.act(law, state, journal, factor, dt_s);
         let mean = from.velocity_m_s + journal.velocity_m_s;
-        let signal = Signal {
+        let mut signal = Signal {
             begin_n: begin_n + jump_n * turn(from.direction, mean),
             end_n: state.force_n + state.jump_n * turn(journal.direction, mean),
             now_n: state.force_n,
         };
-        let effects = &mut state.effects;
-        state.reading_n = self.effects.reading(effects, signal, to.time_s, dt_s).now_n;
+        self.effects
+            .reading(&mut state.effects, &mut signal, to.time_s, dt_s);
+        state.reading_n = signal.now_n;
         state.reading_n
+    }
+
+    /// Advances the state by `dt_s` to a speed (m/s, signed) and returns the reading of the
+    /// instrument there, N.
+    ///
+    /// The acceleration and the angle follow from the speed, which changes linearly in the step. Load
+    /// and temperature remain those of the last sample.
+    #[inline]
+    pub fn step_velocity(&self, state: &mut State<T, L::State, E>, velocity_m_s: T, dt_s: T) -> T {
+        let before = &state.motion;
+        let mean_m_s = (before.velocity_m_s + velocity_m_s) * T::of(0.5);
+        let to = Motion {
+            time_s: before.time_s + dt_s,
+            velocity_m_s,
+            acceleration_m_s2: (velocity_m_s - before.velocity_m_s) / dt_s,
+            angle_rad: before.angle_rad + mean_m_s * dt_s / self.rig.radius_m,
+            ..*before
+        };
+        self.step(state, &to, dt_s)
     }
 
     /// Longest stable step of the law at the top speed (m/s), under the lightest and the heaviest
@@ -267,8 +329,8 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
     #[inline(always)]
     fn scaled(&self, states: &mut E::State, load_n: T) -> Option<L> {
         let mut scales = None;
-        let share = || self.law.load_share(load_n);
-        self.effects.scales(states, share, &mut scales);
+        let share = self.law.load_share(load_n);
+        self.effects.scales(states, &mut scales, share);
         self.law.scaled(&scales?)
     }
 
@@ -302,9 +364,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         );
         let (mut beside_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
         self.effects
-            .other(&state.effects, &journal, &mut beside_n, &mut transmitted_n);
+            .add_friction(&state.effects, &journal, &mut beside_n, &mut transmitted_n);
         self.effects
-            .transmission(&state.effects, transmitted_n, &mut sliding);
+            .transmission(&state.effects, &mut sliding, transmitted_n);
         // Friction that deflects a bristle, and friction that acts in parallel with it.
         let (magnitude, beside) = if L::BENDS_WHOLE {
             (sliding.jump + sliding.smooth.abs(), T::ZERO)
@@ -320,8 +382,11 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         let bent = if L::HAS_BRISTLE {
             Some(law.bend(&mut state.law, &state.journal, &journal, levels, dt_s))
         } else {
+            let (states, from) = (&mut state.effects, &state.journal);
+            let mut deflected = None;
             self.effects
-                .bristle(&mut state.effects, &state.journal, &journal, levels, dt_s)
+                .bristle(states, from, &journal, &mut deflected, levels, dt_s);
+            deflected
         };
         let bent = bent.map(|bristle| bristle + beside);
         let coefficient = bent.unwrap_or_else(|| sliding.along(journal.direction));
@@ -349,7 +414,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         }
         // Only the film's own friction heats the film; a drag elsewhere does not.
         let power_w = (coefficient * load_n * speed).abs();
-        self.effects.warm(&mut state.effects, power_w, dt_s);
+        self.effects.heat(&mut state.effects, power_w, dt_s);
         state.journal = journal;
     }
 }

@@ -120,7 +120,7 @@ impl BaseLaw<f64> {
 
     /// Converts to another number type.
     #[must_use]
-    pub fn lift<T: Real>(&self) -> BaseLaw<T> {
+    pub fn cast<T: Real>(&self) -> BaseLaw<T> {
         let [first, second] = self.gains().map(T::of);
         match self {
             Self::Position { .. } => BaseLaw::Position {
@@ -139,13 +139,13 @@ impl<T: Real> BaseLaw<T> {
     /// Returns [`BaseLaw::THESIS_POSITION`] in this number type.
     #[must_use]
     pub fn thesis_position() -> Self {
-        BaseLaw::THESIS_POSITION.lift()
+        BaseLaw::THESIS_POSITION.cast()
     }
 
     /// Returns [`BaseLaw::THESIS_VELOCITY`] in this number type.
     #[must_use]
     pub fn thesis_velocity() -> Self {
-        BaseLaw::THESIS_VELOCITY.lift()
+        BaseLaw::THESIS_VELOCITY.cast()
     }
 
     /// Returns the control error: controlled quantity minus its reference, rad or rad/s.

@@ -112,9 +112,4 @@ impl<T: Real> Encoder<T> {
         let low = (state.total & 0xf_ffff) as i32;
         (T::from_i32(high) * T::of(1_048_576.0) + T::from_i32(low)) * self.rad_per_count
     }
-
-    /// Returns the angle per count, rad.
-    pub fn rad_per_count(&self) -> T {
-        self.rad_per_count
-    }
 }

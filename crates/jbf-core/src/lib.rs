@@ -1,19 +1,4 @@
-//! Fixed-step simulation of dynamic friction and of the effects that a recorded signal adds to it.
-//!
-//! The base model is the dynamic friction of a hydrodynamic journal bearing (Harnoy & Friedland
-//! 1994, as reduced by Cohn, NJIT 1998).
-//!
-//! The crate is `no_std` and does not allocate, a step does not panic, and results are identical
-//! bit for bit on every target. Configuration ([`Chain`], [`law::journal::Journal`]) is separate
-//! from state, so one set of coefficients serves many runs.
-//!
-//! ```
-//! use jbf_core::{Bearing, Clock, law::{Law, journal::{Journal, Parameters}}};
-//! let law = Journal::new(&Bearing::THESIS, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
-//! let steady = law.steady(0.02)?;
-//! assert!((steady.coefficient - 0.05782937675212433).abs() < 1e-9);
-//! # Ok::<(), jbf_core::Error>(())
-//! ```
+#![doc = include_str!("../README.md")]
 #![no_std]
 // The only `unsafe` call is in `root.rs`, on Cortex-M with a floating-point unit. Unsafe code is
 // forbidden on all other targets.
@@ -27,11 +12,6 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
-/// Runs the example of the README as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-mod readme {}
-
 // Foundations: numbers, names and errors.
 pub mod bearing;
 mod builder;
@@ -40,13 +20,12 @@ mod delay_line;
 pub mod dual;
 pub mod error;
 pub mod film;
-pub mod film_path;
 pub mod friction;
 pub mod motion;
 pub mod page;
 mod path;
 pub mod real;
-pub mod relaxation;
+mod relaxation;
 mod root;
 pub mod transition;
 

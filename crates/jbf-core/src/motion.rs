@@ -35,6 +35,13 @@ pub struct Motion<T> {
     pub temperature_c: Option<T>,
 }
 
+impl<T: Real> Default for Motion<T> {
+    /// Returns a motion at rest without load, at time and angle zero.
+    fn default() -> Self {
+        Self::at_rest(T::ZERO)
+    }
+}
+
 impl<T: Real> Motion<T> {
     /// Creates a motion at rest under a load (N), at time and angle zero.
     #[must_use]
@@ -120,16 +127,16 @@ impl<T: Real> Motion<T> {
 
     /// Converts to another number type, without derivatives.
     #[inline(always)]
-    pub fn lift<U: Real>(&self) -> Motion<U> {
-        let lift = |value: T| U::of(value.value());
+    pub fn cast<U: Real>(&self) -> Motion<U> {
+        let cast = |value: T| U::of(value.value());
         Motion {
-            time_s: lift(self.time_s),
-            velocity_m_s: lift(self.velocity_m_s),
-            acceleration_m_s2: lift(self.acceleration_m_s2),
-            angle_rad: lift(self.angle_rad),
-            weight_offset_rad: lift(self.weight_offset_rad),
-            load_n: lift(self.load_n),
-            temperature_c: self.temperature_c.map(lift),
+            time_s: cast(self.time_s),
+            velocity_m_s: cast(self.velocity_m_s),
+            acceleration_m_s2: cast(self.acceleration_m_s2),
+            angle_rad: cast(self.angle_rad),
+            weight_offset_rad: cast(self.weight_offset_rad),
+            load_n: cast(self.load_n),
+            temperature_c: self.temperature_c.map(cast),
         }
     }
 

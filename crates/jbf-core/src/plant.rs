@@ -16,7 +16,7 @@
 
 use crate::builder::with_fields;
 use crate::chain::{self, Chain};
-use crate::effect::{EffectSet, Effects};
+use crate::effect::{Effect, Effects};
 use crate::error::{not_negative, positive, Error};
 use crate::friction::Friction;
 use crate::law::Law;
@@ -113,7 +113,7 @@ pub struct Plant<T: Real, L, E = Effects<T>> {
 
 /// State of the simulated shaft.
 #[derive(Clone, Copy, Debug)]
-pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
+pub struct State<T: Real, S, E: Effect<T> = Effects<T>> {
     /// Angle of the shaft, rad.
     pub angle_rad: T,
     /// Speed of the shaft, rad/s.
@@ -129,7 +129,7 @@ pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
 /// State at the start of a step, and the inputs of the step.
 ///
 /// Each trial of a step starts from this state and stores its end in [`State`].
-struct Before<T: Real, S, E: EffectSet<T>> {
+struct Before<T: Real, S, E: Effect<T>> {
     chain: chain::State<T, S, E>,
     speed_rad_s: T,
     angle_rad: T,
@@ -138,7 +138,7 @@ struct Before<T: Real, S, E: EffectSet<T>> {
     load_n: T,
 }
 
-impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
+impl<T: Real, L: Law<T>, E: Effect<T>> Plant<T, L, E> {
     /// Creates a plant that advances by `step_s`, with which the law must be stable.
     ///
     /// # Errors
@@ -314,9 +314,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         };
         state.chain = before.chain;
         self.chain.step(&mut state.chain, &to, h);
-        let felt_n = self.chain.felt(&state.chain);
+        let reaction_n = self.chain.reaction_n(&state.chain);
         state.speed_rad_s = speed_rad_s;
         state.angle_rad = angle_rad;
-        felt_n.times(self.volts_per_n)
+        reaction_n.times(self.volts_per_n)
     }
 }

@@ -26,7 +26,7 @@ impl Record<'_> {
     /// Returns the motion at sample `i`; `None` beyond the shortest slice.
     #[inline(always)]
     pub fn motion<T: Real>(&self, i: usize) -> Option<Motion<T>> {
-        Some(self.sample(i)?.lift())
+        Some(self.sample(i)?.cast())
     }
 
     /// Returns the motion at sample `i` without derivatives; `None` beyond the shortest slice.

@@ -2,7 +2,7 @@
 //! samples.
 
 use crate::chain::{Chain, State, SHORTEST_STEP_S};
-use crate::effect::{EffectSet, Rig, Signal};
+use crate::effect::{Effect, Rig, Signal};
 use crate::law::Law;
 use crate::motion::{crossing, Motion};
 use crate::real::Real;
@@ -31,7 +31,7 @@ pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 /// The function is inlined into its caller, so that a caller compiled for a wider instruction set
 /// includes all of it.
 #[inline(always)]
-pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
+pub fn predict<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
@@ -47,15 +47,15 @@ pub enum Steps {
     Every,
     /// Only the last inner step before each sample.
     ///
-    /// The other steps do not change a reading of a chain without memory ([`EffectSet::remembers`],
-    /// [`crate::film_path::OnPath`]).
+    /// The other steps do not change a reading of a chain without memory ([`Effect::has_memory`],
+    /// `jbf_batch::film_path::OnPath`).
     Last,
 }
 
 /// Predicts the readings along a record like [`predict`], with all inner steps or only the last one
 /// before each sample.
 #[inline(always)]
-pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
+pub fn predict_by<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
@@ -67,7 +67,7 @@ pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     };
     let max_step_s = inner_step_s(chain, record, max_step_s);
     let radius_m = chain.rig.radius_m.value();
-    let mut state = chain.start(&from.lift());
+    let mut state = chain.start(&from.cast());
     sink(0, state.reading_n);
     let mut i = 1;
     while let Some(sample) = record.sample(i) {
@@ -97,7 +97,7 @@ pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
 ///
 /// Above [`FASTEST_FILM_1_S`], a prediction limits the eccentricity of the film and does not
 /// resolve its dynamics.
-pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+pub fn film_rate_1_s<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
 ) -> f64 {
@@ -109,12 +109,12 @@ pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
 ///
 /// The result is infinite (one step per sample) if law and effects have no memory. Predictions of
 /// one record with equal inner steps have the same instants.
-pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+pub fn inner_step_s<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
 ) -> f64 {
-    if !L::HAS_MEMORY && !chain.effects.remembers() {
+    if !L::HAS_MEMORY && !chain.effects.has_memory() {
         return f64::INFINITY;
     }
     let enough_s = step_s(record) / L::ENOUGH_STEPS;
@@ -127,7 +127,7 @@ pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
 /// Number of inner steps of [`predict`] along a record, a measure of the computing time.
 ///
 /// The number is accurate to one per sample and reversal.
-pub fn inner_steps<T: Real, L: Law<T>, E: EffectSet<T>>(
+pub fn inner_steps<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
@@ -145,7 +145,7 @@ fn step_s(record: &Record<'_>) -> f64 {
 }
 
 /// Longest step that resolves the film along a record, s.
-fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+fn film_step_s<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
 ) -> f64 {
@@ -161,7 +161,7 @@ fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
 /// The force is linear between the samples, and only the instrument effects act. `sink` receives
 /// the index of each sample and its reading.
 pub fn read_force<T: Real>(
-    effects: &impl EffectSet<T>,
+    effects: &impl Effect<T>,
     time_s: &[f64],
     force_n: &[f64],
     mut sink: impl FnMut(usize, T),
@@ -175,7 +175,9 @@ pub fn read_force<T: Real>(
     let mut last: Option<(f64, f64)> = None;
     for (i, (&t, &force)) in time_s.iter().zip(force_n).enumerate() {
         let Some((before_s, before_n)) = last.replace((t, force)) else {
-            sink(i, effects.first(&mut states, T::of(force)));
+            let mut reading_n = T::of(force);
+            effects.first_reading(&mut states, &mut reading_n);
+            sink(i, reading_n);
             continue;
         };
         let dt = t - before_s;
@@ -184,15 +186,14 @@ pub fn read_force<T: Real>(
         for k in 0..steps as u32 {
             let at = |share: f64| T::of(before_n + (force - before_n) * share);
             let (begin, end) = (f64::from(k) / steps, f64::from(k + 1) / steps);
-            let signal = Signal {
+            let mut signal = Signal {
                 begin_n: at(begin),
                 end_n: at(end),
                 now_n: at(end),
             };
             let time = T::of(before_s + dt * end - time_s[0]);
-            reading = effects
-                .reading(&mut states, signal, time, T::of(dt / steps))
-                .now_n;
+            effects.reading(&mut states, &mut signal, time, T::of(dt / steps));
+            reading = signal.now_n;
         }
         sink(i, reading);
     }
@@ -214,7 +215,7 @@ fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motio
 ///
 /// The imposed motion has no derivatives and is converted from plain numbers in each step.
 #[inline(always)]
-fn between<T: Real, L: Law<T>, E: EffectSet<T>>(
+fn between<T: Real, L: Law<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     state: &mut State<T, L::State, E>,
     [from, to]: [&Motion<f64>; 2],
@@ -225,6 +226,6 @@ fn between<T: Real, L: Law<T>, E: EffectSet<T>>(
     let radius_m = chain.rig.radius_m.value();
     for k in first..=steps as u32 {
         let motion = from.towards(to, f64::from(k) / steps, radius_m);
-        chain.step(state, &motion.lift(), inner);
+        chain.step(state, &motion.cast(), inner);
     }
 }

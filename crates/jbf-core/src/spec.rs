@@ -7,7 +7,7 @@
 use crate::bearing::Bearing;
 use crate::chain::Chain;
 use crate::clock::Clock;
-use crate::effect::Effects;
+use crate::effect::{Effects, Rig};
 use crate::error::ParameterError;
 use crate::law::{with_law, Named, Visitor};
 use crate::real::Real;
@@ -36,18 +36,21 @@ pub trait Using<T: Real> {
     fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output;
 }
 
-struct Round<'a, T: Real, U> {
+struct Build<'a, T: Real, U> {
     effects: Effects<T>,
     bearing: Option<&'a Bearing>,
     then: U,
 }
 
-impl<T: Real, U: Using<T>> Visitor<T> for Round<'_, T, U> {
+impl<T: Real, U: Using<T>> Visitor<T> for Build<'_, T, U> {
     type Output = U::Output;
 
     fn visit<L: Named<T>>(self, law: L) -> U::Output {
-        self.then
-            .with(Chain::round(law, self.effects, self.bearing))
+        self.then.with(Chain {
+            law,
+            effects: self.effects,
+            rig: Rig::on(self.bearing),
+        })
     }
 }
 
@@ -66,12 +69,12 @@ impl<T: Real> Spec<'_, T> {
         for (name, values) in effects {
             all.set(name, values.as_ref())?;
         }
-        let round = Round {
+        let build = Build {
             effects: all,
             bearing: self.bearing,
             then,
         };
         let (bearing, load_n) = (self.bearing, self.load_n);
-        with_law(self.law, bearing, load_n, self.values, self.clock, round)
+        with_law(self.law, bearing, load_n, self.values, self.clock, build)
     }
 }

@@ -75,7 +75,7 @@ fn friction_of_a_law_with_a_tiny_load_is_finite_or_the_load_is_refused() {
             Clock::Journal,
         );
         let Ok(law) = built else { continue };
-        let chain = Chain::round(law, Effects::NONE, Some(&Bearing::THESIS));
+        let chain = Chain::new(law).on(&Bearing::THESIS);
         let reading_n = chain.start(&Motion::at_rest(0.0)).reading_n;
         assert!(reading_n.is_finite(), "{load_n} N: {reading_n}");
     }

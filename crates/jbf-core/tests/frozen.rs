@@ -9,8 +9,8 @@ mod common;
 
 use common::bench::{self, Control, COUNTS_PER_RAD, DRIVE, DT_S, LOAD_N};
 use common::chain_round;
-use jbf_core::compensator::carried::{Carried, Whole};
-use jbf_core::compensator::{Bare, Observed};
+use jbf_core::compensator::model::{ChainModel, FrictionModel};
+use jbf_core::compensator::{LawModel, Observed};
 use jbf_core::controller::Status;
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::dahl::Dahl;
@@ -49,7 +49,7 @@ fn errors<T: Real, L: Law<f64>>(
     told: &str,
     control: Control,
     chain: Chain<f64, L>,
-    model: impl Carried<T>,
+    model: impl FrictionModel<T>,
 ) -> [f64; 2] {
     let compensator = Observed::new(model, &bench::settings(control)).expect("settings");
     let controller = bench::controller::<T, _>(control, compensator);
@@ -105,12 +105,12 @@ fn comes_back<T: Real, A: Named<T>, B: Named<f64>>(values: &[f64], effects: &[(&
         (Control::Velocity, "velocity"),
     ] {
         let chain = || chain_round(law::<f64, B>(values), effects);
-        let whole = Whole::new(
+        let whole = ChainModel::new(
             chain_round(law::<T, A>(values), effects),
             DRIVE.volts_per_n,
             LOAD_N,
         );
-        let bare = Bare::new(law::<T, A>(values), 0.0127, DRIVE.volts_per_n, LOAD_N);
+        let bare = LawModel::new(law::<T, A>(values), 0.0127, DRIVE.volts_per_n, LOAD_N);
         let told = format!("{} {values:?} {effects:?} {named}", A::INFO.name);
         let mut seen = vec![errors(&told, control, chain(), whole)];
         if effects.is_empty() {

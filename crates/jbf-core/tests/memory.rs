@@ -4,7 +4,7 @@
 use jbf_core::chain::State;
 use jbf_core::effect::coulomb_drag::CoulombDrag;
 use jbf_core::effect::sensor_lag::SensorLag;
-use jbf_core::effect::{Beside, EffectSet, Effects, InInstrument};
+use jbf_core::effect::{Effect, Effects};
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::Law;
 use jbf_core::motion::JournalMotion;
@@ -14,7 +14,7 @@ use std::mem::size_of;
 type Changes<T, L, E> = State<T, <L as Law<T>>::State, E>;
 
 /// Size of the state of a chain with Coulomb's law, bytes.
-fn state<T: Real, E: EffectSet<T>>() -> usize {
+fn state<T: Real, E: Effect<T>>() -> usize {
     size_of::<Changes<T, Coulomb<T>, E>>()
 }
 
@@ -28,16 +28,16 @@ fn lean<T: Real>() {
         "{} bytes, {needed} and the law's one needed",
         state::<T, ()>()
     );
-    let drag = state::<T, Beside<CoulombDrag<T>>>();
+    let drag = state::<T, CoulombDrag<T>>();
     assert_eq!(drag, state::<T, ()>(), "a drag remembers nothing");
-    let lag = state::<T, (Beside<CoulombDrag<T>>, InInstrument<SensorLag<T>>)>();
+    let lag = state::<T, (CoulombDrag<T>, SensorLag<T>)>();
     assert_eq!(lag, state::<T, ()>() + number, "a lag remembers a number");
     assert!(
         state::<T, Effects<T>>() > 4 * lag,
         "the catalogue keeps room for all"
     );
     // Three numbers of the law, two of the rig, one of the drag and one of the lag.
-    type Pair<T> = (Beside<CoulombDrag<T>>, InInstrument<SensorLag<T>>);
+    type Pair<T> = (CoulombDrag<T>, SensorLag<T>);
     assert_eq!(size_of::<Chain<T, Coulomb<T>, ()>>(), 5 * number);
     assert_eq!(size_of::<Chain<T, Coulomb<T>, Pair<T>>>(), 7 * number);
 }

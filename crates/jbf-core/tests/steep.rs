@@ -7,7 +7,7 @@ mod common;
 
 use common::bench::{self, Control, COUNTS_PER_RAD, DRIVE, DT_S, LOAD_N};
 use common::chain_round;
-use jbf_core::compensator::carried::Bare;
+use jbf_core::compensator::model::LawModel;
 use jbf_core::compensator::Observed;
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::{Law, Named};
@@ -26,7 +26,7 @@ fn law<T: Real>(viscous: f64) -> Coulomb<T> {
 /// RMS of the tracking error over a period, relative to the amplitude of the target.
 fn error<T: Real>(control: Control, viscous: f64, times: f64) -> f64 {
     let chain: Chain<f64, Coulomb<f64>> = chain_round(law(viscous), &[]);
-    let model = Bare::new(law::<T>(viscous), 0.0127, DRIVE.volts_per_n, LOAD_N);
+    let model = LawModel::new(law::<T>(viscous), 0.0127, DRIVE.volts_per_n, LOAD_N);
     let compensator = Observed::new(model, &bench::settings(control)).expect("settings");
     let controller = bench::controller::<T, _>(control, compensator);
     // An amplitude within the ability of the drive.

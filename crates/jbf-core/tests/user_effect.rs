@@ -12,26 +12,23 @@ use jbf_core::effect::direction_asymmetry::DirectionAsymmetry;
 use jbf_core::effect::drive_compliance::DriveCompliance;
 use jbf_core::effect::film_memory::FilmMemory;
 use jbf_core::effect::load_dependence::LoadDependence;
-use jbf_core::effect::presliding::Presliding;
+use jbf_core::effect::presliding::{self, Presliding};
 use jbf_core::effect::sensor_lag::SensorLag;
 use jbf_core::effect::thermal_thinning::ThermalThinning;
-use jbf_core::effect::{
-    AsBristle, Beside, EffectSet, Effects, InContact, InDrive, InFilm, InInstrument, InLubricant,
-    Place, Rig, UnderLoad,
-};
+use jbf_core::effect::{Effect, Effects, Named, Rig};
 use jbf_core::{Bearing, Chain, Clock};
 
-type Drive = InDrive<DriveCompliance<f64>>;
-type Oil = InLubricant<ThermalThinning<f64>>;
-type Load = UnderLoad<LoadDependence<f64>>;
-type Film = InFilm<FilmMemory<f64>>;
-type Contact = InContact<DirectionAsymmetry<f64>>;
-type Bristle = AsBristle<Presliding<f64>>;
-type Other = Beside<CoulombDrag<f64>>;
-type Instrument = InInstrument<SensorLag<f64>>;
+type Drive = DriveCompliance<f64>;
+type Oil = ThermalThinning<f64>;
+type Load = LoadDependence<f64>;
+type Film = FilmMemory<f64>;
+type Contact = DirectionAsymmetry<f64>;
+type Bristle = Presliding<f64>;
+type Other = CoulombDrag<f64>;
+type Instrument = SensorLag<f64>;
 
 /// Readings, and the force on the commanded side, under an oscillating load.
-fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
+fn run(effects: impl Effect<f64>) -> Vec<f64> {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
         count: 4.0,
@@ -47,20 +44,20 @@ fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
     let mut out = vec![state.reading_n];
     for i in 1..=700 {
         out.push(chain.step(&mut state, &motion(0.01 * f64::from(i)), 0.01));
-        let felt_n = chain.felt(&state);
-        out.extend([felt_n.jump, felt_n.smooth]);
+        let reaction_n = chain.reaction_n(&state);
+        out.extend([reaction_n.jump, reaction_n.smooth]);
     }
     out
 }
 
 /// Name of an effect, and start values of its parameters.
-fn page<P: Place<f64>>() -> (&'static str, Vec<f64>) {
+fn page<P: Named<f64>>() -> (&'static str, Vec<f64>) {
     let values = P::INFO.parameters.iter().map(|p| p.starts[0]);
     (P::INFO.name, values.collect())
 }
 
-fn typed<P: Place<f64>>() -> P {
-    P::new(&page::<P>().1).expect("starting values are valid")
+fn typed<P: Named<f64>>() -> P {
+    P::build(&page::<P>().1).expect("starting values are valid")
 }
 
 fn catalogue(list: &[(&str, Vec<f64>)]) -> Vec<f64> {
@@ -71,7 +68,7 @@ fn catalogue(list: &[(&str, Vec<f64>)]) -> Vec<f64> {
     run(effects)
 }
 
-fn acts_alike<P: Place<f64>>() {
+fn acts_alike<P: Named<f64>>() {
     let named = catalogue(&[page::<P>()]);
     assert_eq!(run(typed::<P>()), named, "{} alone", P::INFO.name);
     let beside = Effects::NONE.with(typed::<P>());
@@ -147,15 +144,19 @@ fn empty_set_of_user_effects_changes_no_bit() {
 /// A user-defined effect with a parameter at an infinite null value is refused; it must be omitted.
 #[test]
 fn effect_at_an_infinite_null_is_refused() {
-    let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
+    let error = Bristle::new(presliding::Parameters {
+        sigma: f64::INFINITY,
+    })
+    .expect_err("vanishes");
     assert_eq!(error.name(), "sigma");
-    assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
+    assert!(Bristle::new(presliding::Parameters { sigma: -1.0 }).is_err());
+    assert!(<Bristle as Named<f64>>::build(&[]).is_err());
 }
 
 /// The longest step of a typed set is the shortest one of its effects.
 #[test]
 fn longest_step_of_a_set_is_the_shortest_of_its_effects() {
     let set = (typed::<Other>(), typed::<Drive>());
-    assert_eq!(EffectSet::<f64>::longest_step_s(&set), 0.005);
-    assert_eq!(EffectSet::<f64>::longest_step_s(&()), f64::INFINITY);
+    assert_eq!(Effect::<f64>::longest_step_s(&set), 0.005);
+    assert_eq!(Effect::<f64>::longest_step_s(&()), f64::INFINITY);
 }

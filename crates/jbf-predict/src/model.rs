@@ -1,9 +1,9 @@
 //! Prediction model: a law and effects that are selected by name.
 
 use crate::run::Run;
+use jbf_batch::film_path::Place;
 use jbf_batch::Baseline;
 use jbf_core::effect::Info;
-use jbf_core::film_path::Place;
 use jbf_core::record::Record;
 use jbf_core::spec::{Spec, Using};
 use jbf_core::{law, Bearing, Clock, ParameterError, Real};
@@ -27,7 +27,7 @@ pub struct Model<'a> {
     pub max_step_s: f64,
 }
 
-/// Precomputed states of a film along a record ([`jbf_core::film_path`]).
+/// Precomputed states of a film along a record ([`jbf_batch::film_path`]).
 #[derive(Clone, Copy, Debug)]
 pub struct FilmPath<'a> {
     /// States of the film, one per step.

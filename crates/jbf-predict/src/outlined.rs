@@ -11,7 +11,7 @@
 
 use core::cell::RefCell;
 use jbf_batch::InstructionSet;
-use jbf_core::effect::{EffectSet, Effects, OccupiedStages, Resistance, Rig, Signal, States};
+use jbf_core::effect::{Effect, Effects, OccupiedStages, Resistance, Rig, Signal, States};
 use jbf_core::friction::Friction;
 use jbf_core::law::Scales;
 use jbf_core::motion::{JournalMotion, Motion};
@@ -58,7 +58,40 @@ impl<T: Real, I: InstructionSet> Outlined<'_, T, I> {
     }
 }
 
-impl<T: Real, I: InstructionSet> EffectSet<T> for Outlined<'_, T, I> {
+/// Condition under which a method of a stage has an effect.
+macro_rules! occupied {
+    // An instrument adds a constant to the force that the transmission carries, and nothing else.
+    ($occupied:expr, add_friction, $($stage:ident)+) => {
+        $occupied.other || ($occupied.instrument && $occupied.transmission)
+    };
+    ($occupied:expr, $method:ident, $($stage:ident)+) => { $($occupied.$stage)||+ };
+}
+
+/// Methods that call a stage with copies of their arguments.
+macro_rules! outlined {
+    ($($m:ident [$($stage:ident)+] [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*)
+        ($($v:ident: $V:ty),*);)*) => {$(
+        // Some methods change none of their arguments.
+        #[allow(clippy::unused_unit)]
+        #[inline(always)]
+        fn $m(&self, _: $($ref)+ (), $($i: &$I,)* $($o: &mut $O,)* $($v: $V),*) {
+            if occupied!(self.occupied, $m, $($stage)+) {
+                $(let $i = *$i;)*
+                let before = ($(*$o,)*);
+                ($(*$o,)*) = self.call(
+                    #[inline(always)]
+                    |effects, states| {
+                        let ($(mut $o,)*) = before;
+                        effects.$m(states, $(&$i,)* $(&mut $o,)* $($v),*);
+                        ($($o,)*)
+                    },
+                );
+            }
+        }
+    )*};
+}
+
+impl<T: Real, I: InstructionSet> Effect<T> for Outlined<'_, T, I> {
     type State = ();
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) {
@@ -67,180 +100,15 @@ impl<T: Real, I: InstructionSet> EffectSet<T> for Outlined<'_, T, I> {
     fn longest_step_s(&self) -> f64 {
         self.effects.longest_step_s()
     }
-    fn remembers(&self) -> bool {
-        self.effects.remembers()
+    fn has_memory(&self) -> bool {
+        self.effects.has_memory()
     }
     #[inline(always)]
     fn has_drive(&self) -> bool {
         self.occupied.drive
     }
-    #[inline(always)]
-    fn drive(&self, _: &mut (), journal: &mut JournalMotion<T>, rig: &Rig<T>, dt_s: T) {
-        if self.occupied.drive {
-            let (from, rig) = (*journal, *rig);
-            *journal = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let mut to = from;
-                    effects.drive(states, &mut to, &rig, dt_s);
-                    to
-                },
-            );
-        }
-    }
-    #[inline(always)]
-    fn resist(&self, _: &mut (), resistance: &Resistance<T>, dt_s: T) {
-        if self.occupied.drive {
-            let resistance = *resistance;
-            self.call(
-                #[inline(always)]
-                |effects, states| effects.resist(states, &resistance, dt_s),
-            );
-        }
-    }
-    fn transmitted_n(&self, _: &(), motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
-        self.effects
-            .transmitted_n(&self.states.borrow(), motion, rig)
-    }
-    #[inline(always)]
-    fn lubricant(&self, _: &(), journal: &JournalMotion<T>, factor: &mut T) {
-        if self.occupied.lubricant {
-            let (journal, before) = (*journal, *factor);
-            *factor = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let mut factor = before;
-                    effects.lubricant(states, &journal, &mut factor);
-                    factor
-                },
-            );
-        }
-    }
-    #[inline(always)]
-    fn warm(&self, _: &mut (), power_w: T, dt_s: T) {
-        if self.occupied.lubricant {
-            self.call(
-                #[inline(always)]
-                |effects, states| effects.warm(states, power_w, dt_s),
-            );
-        }
-    }
-    #[inline(always)]
-    fn scales(&self, _: &mut (), share: impl Fn() -> T + Copy, scales: &mut Option<Scales<T>>) {
-        if self.occupied.load {
-            let (share, before) = (share(), *scales);
-            *scales = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let mut scales = before;
-                    effects.scales(states, || share, &mut scales);
-                    scales
-                },
-            );
-        }
-    }
-    #[inline(always)]
-    fn film_rate(&self, _: &(), journal: &JournalMotion<T>, rate: &mut T) {
-        if self.occupied.lubricant || self.occupied.film {
-            let (journal, before) = (*journal, *rate);
-            *rate = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let mut rate = before;
-                    effects.film_rate(states, &journal, &mut rate);
-                    rate
-                },
-            );
-        }
-    }
     fn fastest_film(&self) -> f64 {
         self.effects.fastest_film()
     }
-    #[inline(always)]
-    fn contact(
-        &self,
-        _: &mut (),
-        from: &JournalMotion<T>,
-        to: &JournalMotion<T>,
-        sliding: &mut Friction<T>,
-        dt_s: T,
-    ) {
-        if self.occupied.contact {
-            let (from, to, before) = (*from, *to, *sliding);
-            *sliding = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let mut sliding = before;
-                    effects.contact(states, &from, &to, &mut sliding, dt_s);
-                    sliding
-                },
-            );
-        }
-    }
-    #[inline(always)]
-    fn transmission(&self, _: &(), transmitted_n: T, sliding: &mut Friction<T>) {
-        if self.occupied.transmission {
-            let before = *sliding;
-            *sliding = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let mut sliding = before;
-                    effects.transmission(states, transmitted_n, &mut sliding);
-                    sliding
-                },
-            );
-        }
-    }
-    #[inline(always)]
-    fn bristle(
-        &self,
-        _: &mut (),
-        from: &JournalMotion<T>,
-        to: &JournalMotion<T>,
-        magnitude: [T; 2],
-        dt_s: T,
-    ) -> Option<T> {
-        if !self.occupied.bristle {
-            return None;
-        }
-        let (from, to) = (*from, *to);
-        self.call(
-            #[inline(always)]
-            |effects, states| effects.bristle(states, &from, &to, magnitude, dt_s),
-        )
-    }
-    #[inline(always)]
-    fn other(
-        &self,
-        _: &(),
-        journal: &JournalMotion<T>,
-        all_n: &mut Friction<T>,
-        transmitted_n: &mut T,
-    ) {
-        let constant = self.occupied.instrument && self.occupied.transmission;
-        if self.occupied.other || constant {
-            let (journal, before) = (*journal, (*all_n, *transmitted_n));
-            (*all_n, *transmitted_n) = self.call(
-                #[inline(always)]
-                |effects, states| {
-                    let (mut all_n, mut transmitted_n) = before;
-                    effects.other(states, &journal, &mut all_n, &mut transmitted_n);
-                    (all_n, transmitted_n)
-                },
-            );
-        }
-    }
-    fn first(&self, _: &mut (), force_n: T) -> T {
-        self.effects.first(&mut self.states.borrow_mut(), force_n)
-    }
-    #[inline(always)]
-    fn reading(&self, _: &mut (), signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
-        if !self.occupied.instrument {
-            return signal;
-        }
-        self.call(
-            #[inline(always)]
-            |effects, states| effects.reading(states, signal, time_s, dt_s),
-        )
-    }
+    jbf_core::forward_stages!(outlined);
 }

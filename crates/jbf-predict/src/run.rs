@@ -2,9 +2,9 @@
 
 use crate::model::FilmPath;
 use crate::outlined::Outlined;
+use jbf_batch::film_path::OnPath;
 use jbf_batch::InstructionSet;
-use jbf_core::effect::EffectSet;
-use jbf_core::film_path::OnPath;
+use jbf_core::effect::Effect;
 use jbf_core::law::{Law, Named};
 use jbf_core::record::Record;
 use jbf_core::run::{self, Steps};
@@ -26,7 +26,7 @@ pub struct Run<'a, T, I> {
 impl<T: Real, I: InstructionSet> Run<'_, T, I> {
     /// Predicts with the code of all effects inlined: the fastest to run, and the slowest to
     /// compile.
-    fn inlined<L: Law<T>, E: EffectSet<T>>(self, chain: &Chain<T, L, E>, steps: Steps) {
+    fn inlined<L: Law<T>, E: Effect<T>>(self, chain: &Chain<T, L, E>, steps: Steps) {
         self.instructions.call(
             #[inline(always)]
             || run::predict_by(chain, self.record, self.max_step_s, steps, self.sink),
@@ -57,7 +57,7 @@ impl<T: Real, I: InstructionSet> Using<T> for Run<'_, T, I> {
         };
         // Hot path in the diagnosis of a bearing, therefore inlined.
         let law = OnPath::new(chain.law, [p[first], p[second]], path.places);
-        let (law, steps) = if chain.effects.remembers() {
+        let (law, steps) = if chain.effects.has_memory() {
             (law, Steps::Every)
         } else {
             (law.at(path.ends), Steps::Last)

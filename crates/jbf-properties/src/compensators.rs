@@ -2,13 +2,13 @@
 
 use crate::bytes::{between, clock, effects, number, parameters};
 use arbitrary::{Result, Unstructured};
-use jbf_core::compensator::carried::Whole;
 use jbf_core::compensator::learning::{self, Learned, Rule};
+use jbf_core::compensator::model::ChainModel;
 use jbf_core::compensator::observed::{self, Settings};
 use jbf_core::compensator::repetitive::Repetitive;
 use jbf_core::compensator::table::Axis;
 use jbf_core::compensator::{
-    Bare, Compensator, Coulomb, Learning, NoCompensation, Observed, Table,
+    Compensator, Coulomb, LawModel, Learning, NoCompensation, Observed, Table,
 };
 use jbf_core::control_law::BaseLaw;
 use jbf_core::effect::Effects;
@@ -82,7 +82,7 @@ fn plain<T: Real>(
             then.with(bytes, "repetitive", lap)
         }
         _ => {
-            let film = parameters::<T>(bytes, journal::PARAMETERS)?;
+            let film = parameters::<T>(bytes, <Journal<T> as Named<T>>::INFO.parameters)?;
             let &[f_m, u_tr_m_s, k0, gamma] = film.as_slice() else {
                 return Ok(());
             };
@@ -132,14 +132,16 @@ impl<T: Real, W: With<T>> Visitor<T> for Round<'_, '_, T, W> {
         };
         let name = L::INFO.name;
         if self.bytes.arbitrary()? {
-            let model = Bare::new(law, 0.0127, self.volts_per_n, 104.0);
+            let model = LawModel::new(law, 0.0127, self.volts_per_n, 104.0);
             let Ok(observed) = Observed::new(model, &self.settings) else {
                 return Ok(());
             };
             return self.then.with(self.bytes, name, observed.resumed(begin));
         }
-        let chain = Chain::round(law, self.effects, Some(&Bearing::THESIS));
-        let model = Whole::new(chain, self.volts_per_n, 104.0);
+        let chain = Chain::new(law)
+            .with_effects(self.effects)
+            .on(&Bearing::THESIS);
+        let model = ChainModel::new(chain, self.volts_per_n, 104.0);
         let Ok(observed) = Observed::new(model, &self.settings) else {
             return Ok(());
         };

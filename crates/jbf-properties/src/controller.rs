@@ -122,7 +122,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let running = Running {
         encoder,
         observer,
-        law: law.lift(),
+        law: law.cast(),
         limits,
         dt_s,
         most_counts: (counts_per_rad * top * dt_s) as i64,

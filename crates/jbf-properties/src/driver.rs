@@ -4,8 +4,9 @@ use crate::bytes::{between, parameter};
 use crate::steps;
 use arbitrary::{Result, Unstructured};
 use jbf_core::driver::{follow, Excitation, Film, Sample, Sampled, Sine, Start};
-use jbf_core::law::journal::{Journal, Parameters, PARAMETERS};
+use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
+use jbf_core::law::Named;
 use jbf_core::{Bearing, Clock};
 
 /// Number of samples of a trajectory; a few are sufficient to test that it is finite.
@@ -51,7 +52,7 @@ fn along<F: Film<f64, N>, E: Excitation, const N: usize>(
 }
 
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
-    let mut value = |i: usize| parameter(bytes, &PARAMETERS[i]);
+    let mut value = |i: usize| parameter(bytes, &<Journal<f64> as Named<f64>>::INFO.parameters[i]);
     let parameters = Parameters {
         f_m: value(0)?,
         // Beyond these values a journal of this mass physically oscillates for millions of periods.

@@ -4,9 +4,10 @@
 use crate::bytes::{between, clock, number, parameter, step_s};
 use crate::steps::seen;
 use arbitrary::{Result, Unstructured};
-use jbf_core::law::journal::{Journal, Parameters, PARAMETERS};
+use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::law::Law;
+use jbf_core::law::Named;
 use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P};
 use jbf_core::{Bearing, Real};
 
@@ -14,7 +15,8 @@ use jbf_core::{Bearing, Real};
 const LARGEST: f64 = 1e9;
 
 fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
-    let mut value = |i: usize| parameter(bytes, &PARAMETERS[i]).map(T::of);
+    let mut value =
+        |i: usize| parameter(bytes, &<Journal<f64> as Named<f64>>::INFO.parameters[i]).map(T::of);
     let parameters = Parameters {
         f_m: value(0)?,
         u_tr_m_s: value(1)?,

@@ -9,7 +9,7 @@ use core::ffi::{c_char, CStr};
 use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
 use jbf_c::{CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PARAMETER};
-use jbf_core::effect::{self, Effects};
+use jbf_core::effect::{self, Effects, Rig};
 use jbf_core::law::{self, Named};
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 
@@ -106,7 +106,7 @@ macro_rules! laws {
                     (NAME, None) => return Ok(()),
                     (code, built) => panic!("{}: {code} where the core says {built:?}", page.name),
                 };
-                let mut chain = Chain::round(law, Effects::NONE, shaft);
+                let mut chain = Chain { law, effects: Effects::NONE, rig: Rig::on(shaft) };
                 for _ in 0..bytes.int_in_range(0..=3)? {
                     effect(bytes, model, &mut chain, &page)?;
                 }

@@ -7,7 +7,6 @@ use crate::bytes::{between, clock, number, parameters, step_s};
 use crate::steps::seen;
 use arbitrary::{Result, Unstructured};
 use jbf_core::chain::SHORTEST_STEP_S;
-use jbf_core::effect::Effects;
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{Bearing, Chain, Motion, Real};
 
@@ -26,8 +25,7 @@ impl<T: Real> Visitor<T> for Along<'_, '_> {
 
     fn visit<L: Named<T>>(self, law: L) -> Result<()> {
         let bytes = self.0;
-        let bearing = Some(&Bearing::THESIS);
-        let chain = Chain::round(law, Effects::NONE, bearing);
+        let chain = Chain::new(law).on(&Bearing::THESIS);
         let mut motion = Motion::at_rest(T::of(104.0));
         let mut state = chain.start(&motion);
         let mut highest = T::ZERO;

@@ -91,7 +91,9 @@ impl<T: Real> Visitor<T> for Turning<'_, '_, T> {
             .with_volts_per_n(between(bytes, 1e-6, 1.0)?);
         let step_s = between(bytes, 1e-5, 1e-2)?;
         let parts = (self.values, self.effects);
-        let chain = Chain::round(Counted(law), self.effects, Some(&Bearing::THESIS));
+        let chain = Chain::new(Counted(law))
+            .with_effects(self.effects)
+            .on(&Bearing::THESIS);
         let Ok(plant) = Plant::new(chain, drive, step_s) else {
             return Ok(());
         };

@@ -1,6 +1,6 @@
 //! Catalogues of laws and effects, as lists of dictionaries.
 
-use jbf_core::effect::{moves_jumps, peaks, spreads_jumps, type_names, Parameter, CATALOGUE};
+use jbf_core::effect::{Parameter, CATALOGUE};
 use jbf_core::law;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -47,15 +47,13 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
             }
         }
         d.set_item("refused", refused)?;
-        d.set_item("moves_jumps", moves_jumps(info.name))?;
-        d.set_item("spreads_jumps", spreads_jumps(info.name))?;
-        d.set_item("peaks", peaks(info.name))?;
+        d.set_item("moves_jumps", info.moves_jumps)?;
+        d.set_item("spreads_jumps", info.spreads_jumps)?;
+        d.set_item("peaks", info.multimodal_in)?;
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("further_of", info.further_of)?;
         d.set_item("unknown_start", info.unknown_start)?;
-        let (place, type_name) = type_names(info.name).unzip();
-        d.set_item("rust_place", place)?;
-        d.set_item("rust_type", type_name)?;
+        d.set_item("rust_type", info.rust_type)?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;
     }
@@ -77,7 +75,7 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("has_film", info.has_film)?;
         d.set_item("has_bristle", info.has_bristle)?;
         d.set_item("has_memory", info.has_memory)?;
-        d.set_item("rust_type", law::type_name(info.name))?;
+        d.set_item("rust_type", info.rust_type)?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;
     }

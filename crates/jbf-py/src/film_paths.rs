@@ -6,7 +6,7 @@
 //! The key of a path contains every number on which it depends, bit for bit, so that the cache does
 //! not change any result (python/tests/estimation/test_transients.py).
 
-use jbf_core::film_path::{FilmStep, Place};
+use jbf_batch::film_path::{FilmStep, Place};
 use jbf_core::{Bearing, Clock};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -4,14 +4,13 @@
 
 use crate::hash::Hash;
 use crate::shaft::{asked, Shaft, COUNTS_PER_RAD, DRIVE, LOOP_STEPS, LOOP_STEP_S};
-use jbf_core::compensator::carried::{Bare, Carried, Whole};
 use jbf_core::compensator::learning::{self, Learned, Learning, Rule};
+use jbf_core::compensator::model::{ChainModel, FrictionModel, LawModel};
 use jbf_core::compensator::observed::{Observed, Settings};
 use jbf_core::compensator::table::{Axis, Table};
 use jbf_core::compensator::{Compensator, Coulomb, NoCompensation, Repetitive};
 use jbf_core::controller::{BaseLaw, Controller, Limits};
-use jbf_core::effect::presliding::Presliding;
-use jbf_core::effect::{AsBristle, Place};
+use jbf_core::effect::presliding::{self, Presliding};
 use jbf_core::encoder::Encoder;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
@@ -83,7 +82,7 @@ fn parameters<T: Real>() -> Parameters<T> {
 }
 
 /// Creates a journal law without inertia, fitted to the loop of Cohn (1998).
-pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
+pub fn reduced<T: Real>() -> Result<LawModel<T, Journal<T>>, ParameterError> {
     Ok(bare(Journal::new(
         &Bearing::THESIS,
         LOAD_N,
@@ -93,7 +92,7 @@ pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
 }
 
 /// Creates a journal law with inertia.
-pub fn full<T: Real>() -> Result<Bare<T, JournalFull<T>>, ParameterError> {
+pub fn full<T: Real>() -> Result<LawModel<T, JournalFull<T>>, ParameterError> {
     Ok(bare(JournalFull::new(
         &Bearing::THESIS,
         LOAD_N,
@@ -102,24 +101,23 @@ pub fn full<T: Real>() -> Result<Bare<T, JournalFull<T>>, ParameterError> {
     )?))
 }
 
-fn bare<T: Real, L>(law: L) -> Bare<T, L> {
-    Bare::new(law, Bearing::THESIS.radius_m, DRIVE.volts_per_n, LOAD_N)
+fn bare<T: Real, L>(law: L) -> LawModel<T, L> {
+    LawModel::new(law, Bearing::THESIS.radius_m, DRIVE.volts_per_n, LOAD_N)
 }
 
 /// Creates a chain of a journal law without inertia and presliding.
-pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterError> {
-    let stiffness_1_m = T::of(0.26 * COUNTS_PER_RAD / 0.0127);
-    let effects = Bending::new(&[stiffness_1_m])?;
-    let chain = Chain::round(reduced()?.law, effects, Some(&Bearing::THESIS));
-    Ok(Whole::new(chain, DRIVE.volts_per_n, LOAD_N))
+pub fn chained<T: Real>() -> Result<ChainModel<T, Journal<T>, Presliding<T>>, ParameterError> {
+    let presliding = Presliding::new(presliding::Parameters {
+        sigma: T::of(0.26 * COUNTS_PER_RAD / 0.0127),
+    })?;
+    let chain = Chain::new(reduced()?.law).with_effects(presliding);
+    let chain = chain.on(&Bearing::THESIS);
+    Ok(ChainModel::new(chain, DRIVE.volts_per_n, LOAD_N))
 }
-
-/// Set of effects in the chain of [`chained`].
-pub type Bending<T> = AsBristle<Presliding<T>>;
 
 /// Creates a compensator with a friction model and an observer, with the settings that `jbf control
 /// tune` computes.
-pub fn observed<T: Real, M: Carried<T>>(
+pub fn observed<T: Real, M: FrictionModel<T>>(
     model: M,
     position: bool,
 ) -> Result<Observed<T, M>, ParameterError> {

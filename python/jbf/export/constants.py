@@ -96,10 +96,14 @@ def constants(numbers: Numbers, language: Language) -> list[str]:
         name = language.name(group)
         pages = zip(group.page.parameters, group.values, group.held, strict=True)
         rows = [
-            {"value": language.number(value), "parameter": p.name + _held_words(why)}
+            {
+                "value": language.number(value),
+                "parameter": p.name + _held_words(why),
+                "field": p.name.lower(),
+            }
             for p, value, why in pages
         ]
         out += language.about(f"Parameters of the {group.room} {group.name}.")
-        out += language.array.lines(rows, name=name, count=str(len(rows)))
+        out += language.array.lines(rows, name=name, count=str(len(rows)), module=group.name)
         out += language.check(group, name)
     return out

@@ -11,12 +11,7 @@ from jbf.models.model import Model
 
 def _check(group: Group, name: str) -> list[str]:
     what = f"the {group.room} {group.name}"
-    return [
-        "const _: () = assert!(",
-        f'    jbf_core::{group.room}::fits("{group.name}", &{name}),',
-        f'    "{what} has other parameters, or a value out of bounds"',
-        ");",
-    ]
+    return [f'const _: () = assert!({name}.is_valid(), "a value of {what} is out of bounds");']
 
 
 RUST = Language(
@@ -24,11 +19,10 @@ RUST = Language(
     prefix="",
     bearing=Block("pub const BEARING: Bearing = Bearing::new()", "    .with_{field}({value})", ";"),
     scalar="pub const LOAD_N: f64 = {value};",
-    # One named value per line; rustfmt would join them.
     array=Block(
-        "#[rustfmt::skip]\npub const {name}: [f64; {count}] = [",
-        "    {value}, // {parameter}",
-        "];",
+        "#[rustfmt::skip]\npub const {name}: {module}::Parameters<f64> = {module}::Parameters {{",
+        "    {field}: {value}, // {parameter}",
+        "};",
     ),
     about=lambda text: [f"/// {text}"],
     check=_check,
@@ -48,65 +42,66 @@ def rust(model: Model, source: str = "a model") -> str:
         Origin of the model, for the comment in the first line.
     """
     n = Numbers.of(model)
-    imports = ["Chain", "Clock", "ParameterError", "Real"]
+    imports = ["Chain", "ParameterError", "Real"]
+    law = f"Law::new({RUST.name(n.law)}.cast())?"
     if n.bearing is not None:
         imports.insert(0, "Bearing")
+    if isinstance(n.law.page, Law) and n.law.page.needs_bearing:
+        imports.insert(2, "Clock")
+        clock = f"Clock::{n.clock.capitalize()}"
+        law = f"Law::new(&BEARING, LOAD_N, &{RUST.name(n.law)}.cast(), {clock})?"
     effects = "Effects<T>" if n.effects else "()"
-    bearing = "Some(&BEARING)" if n.bearing is not None else "None"
     out = [
         f"//! The friction model of {source}: {n.title()}.",
         f"//! Written by `jbf export` {_core.__version__}; needs the crate `jbf-core`.",
         "",
-        *(["use jbf_core::effect::Place;"] if n.effects else []),
-        "use jbf_core::law::Named;",
+        *_modules(n),
         f"use jbf_core::{{{', '.join(imports)}}};",
         "",
         *constants(n, RUST),
         "",
         "/// The type of the law.",
-        f"pub type Law<T> = {_path(n.law)};",
+        f"pub type Law<T> = {_path(n.law)}<T>;",
     ]
     if n.effects:
+        pairs = "()"
+        for group in n.effects:
+            pairs = f"({pairs}, {_path(group)}<T>)"
         out += [
             "",
             "/// The type of the effects; memory is reserved for these only.",
-            f"pub type Effects<T> = {_nested([_path(group) for group in n.effects])};",
+            "#[rustfmt::skip]",
+            f"pub type Effects<T> = {pairs};",
         ]
-    placed = [f"Place::new(&{RUST.name(group)}.map(T::of))?" for group in n.effects]
+    calls = [f".with({_path(group)}::new({RUST.name(group)}.cast())?)" for group in n.effects]
+    if n.bearing is not None:
+        calls.append(".on(&BEARING)")
     out += [
         "",
         "/// The model, in `f32` or `f64`.",
         "///",
         "/// # Errors",
         "/// `None` for the constants above; after a change it names the invalid one.",
+        "#[rustfmt::skip]",
         f"pub fn model<T: Real>() -> Result<Chain<T, Law<T>, {effects}>, ParameterError> {{",
-        "    let law = Law::build(",
-        f"        {bearing},",
-        "        Some(LOAD_N),",
-        f"        &{RUST.name(n.law)}.map(T::of),",
-        f"        Clock::{n.clock.capitalize()},",
-        "    )?;",
-        *([f"    let effects = {_nested(placed, '    ')};"] if placed else []),
-        f"    Ok(Chain::round(law, {'effects' if placed else '()'}, {bearing}))",
+        f"    let law = {law};",
+        "    Ok(Chain::new(law)",
+        *(f"        {call}" for call in calls),
+        "    )",
         "}",
     ]
     return "\n".join(out) + "\n"
 
 
+def _modules(n: Numbers) -> list[str]:
+    """Imports of the modules of the law and the effects."""
+    effects = [group.name for group in n.effects]
+    return [
+        *([f"use jbf_core::effect::{{{', '.join(effects)}}};"] if effects else []),
+        f"use jbf_core::law::{n.law.name};",
+    ]
+
+
 def _path(group: Group) -> str:
-    """Rust type of a law, or of an effect at its stage."""
-    if isinstance(group.page, Law):
-        return f"jbf_core::law::{group.name}::{group.page.rust_type}<T>"
-    effect = f"jbf_core::effect::{group.name}::{group.page.rust_type}<T>"
-    return f"jbf_core::effect::{group.page.rust_place}<{effect}>"
-
-
-def _nested(items: list[str], indent: str = "") -> str:
-    """Nested Rust pairs, one item per line, which form a typed set of effects."""
-    if not items:
-        return "()"
-    first, *more = items
-    if not more:
-        return first
-    inner = indent + "    "
-    return f"(\n{inner}{first},\n{inner}{_nested(more, inner)},\n{indent})"
+    """Rust type of a law or an effect, without its number type."""
+    return f"{group.name}::{group.page.rust_type}"

@@ -121,8 +121,8 @@ class Effect:
     unknown_start
         True if the first sample does not determine the initial state, whose influence does not
         decay.
-    rust_place, rust_type
-        Rust types of the stage and of the effect in the core; empty for a user-defined effect.
+    rust_type
+        Rust type of the effect in the core; empty for a user-defined effect.
     columns
         Columns that a user-defined effect requires.
     """
@@ -143,7 +143,6 @@ class Effect:
     columns: tuple[str, ...] = ()
     further_of: str | None = None
     unknown_start: bool = False
-    rust_place: str = ""
     rust_type: str = ""
 
     def __repr__(self) -> str:

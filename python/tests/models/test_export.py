@@ -23,7 +23,7 @@ mod joint;
 mod slider;
 mod warm;
 
-use jbf_core::effect::EffectSet;
+use jbf_core::effect::Effect;
 use jbf_core::law::Named;
 use jbf_core::run::{predict, Record};
 use jbf_core::{Chain, Motion, Real};
@@ -46,7 +46,7 @@ fn main() {
     }
 }
 
-fn step<T: Real, L: Named<T>, E: EffectSet<T>>(
+fn step<T: Real, L: Named<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     c: &[Vec<f64>; 7],
 ) -> Vec<T> {
@@ -74,9 +74,9 @@ fn optional(column: &[f64]) -> Option<&[f64]> {
 fn run<L, E, S, F>(model: Chain<f64, L, E>, small: Chain<f32, S, F>, c: &[Vec<f64>; 7])
 where
     L: Named<f64>,
-    E: EffectSet<f64>,
+    E: Effect<f64>,
     S: Named<f32>,
-    F: EffectSet<f32>,
+    F: Effect<f32>,
 {
     let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, celsius, offset] = c;
     let record = Record {
@@ -311,7 +311,7 @@ def test_exported_source_contains_every_constant_of_the_model(name: str) -> None
         ):
             constants = source[source.index(head) :].split(";\n")[0].splitlines()
             (line,) = [line for line in constants if line.endswith(end)]
-            assert float(line.split(",")[0]) == parameter.value
+            assert float(line.split(",")[0].split(":")[-1]) == parameter.value
     if model.rig.bearing is not None:
         assert f"LOAD_N: f64 = {model.rig.load.normal_n!r};" in rust
         assert f"MODEL_LOAD_N = {model.rig.load.normal_n!r};" in c

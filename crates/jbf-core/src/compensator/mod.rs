@@ -4,16 +4,16 @@
 //! The compensator contains the configuration, and `State` the variables. [`crate::controller`]
 //! runs a compensator in a loop.
 
-pub mod carried;
 pub mod coulomb;
 pub mod learning;
+pub mod model;
 pub mod observed;
 pub mod repetitive;
 pub mod table;
 
-pub use carried::{Bare, Carried};
 pub use coulomb::Coulomb;
 pub use learning::Learning;
+pub use model::{FrictionModel, LawModel};
 pub use observed::Observed;
 pub use repetitive::Repetitive;
 pub use table::Table;
@@ -86,14 +86,14 @@ impl<T: Real> Answer<T> {
 
     /// Converts to another number type.
     #[must_use]
-    pub fn lift<U: Real>(&self) -> Answer<U> {
-        let lift = |value: T| U::of(value.value());
+    pub fn cast<U: Real>(&self) -> Answer<U> {
+        let cast = |value: T| U::of(value.value());
         Answer {
-            sum_v: lift(self.sum_v),
-            friction_v: lift(self.friction_v),
-            correction_v: lift(self.correction_v),
-            forward_v: lift(self.forward_v),
-            learned: self.learned.map(lift),
+            sum_v: cast(self.sum_v),
+            friction_v: cast(self.friction_v),
+            correction_v: cast(self.correction_v),
+            forward_v: cast(self.forward_v),
+            learned: self.learned.map(cast),
         }
     }
 }

@@ -9,7 +9,7 @@
 //! `f32` as on a microcontroller:
 //!
 //! ```
-//! use jbf_core::compensator::{observed::Settings, Bare, Observed};
+//! use jbf_core::compensator::{observed::Settings, LawModel, Observed};
 //! use jbf_core::controller::{BaseLaw, Controller, Limits, Status};
 //! use jbf_core::encoder::Encoder;
 //! use jbf_core::law::journal::{Journal, Parameters};
@@ -22,7 +22,7 @@
 //! const DT_S: f64 = 0.002;
 //! let film = Parameters { f_m: 0.26_f32, u_tr_m_s: 0.06, k0: 7.5e5, gamma: 33.0 };
 //! let journal = Journal::new(&Bearing::THESIS, 104.0, &film, Clock::Journal)?;
-//! let model = Bare::new(journal, Bearing::THESIS.radius_m, Drive::THESIS.volts_per_n, 104.0);
+//! let model = LawModel::new(journal, Bearing::THESIS.radius_m, Drive::THESIS.volts_per_n, 104.0);
 //! let drive = Drive::THESIS;
 //! let law = BaseLaw::velocity(&drive);
 //! // What `jbf control tune model.toml` prints.
@@ -34,7 +34,7 @@
 //! let controller = Controller::new(
 //!     Encoder::new(2387.3, 16, drive.top_speed_rad_s(), DT_S)?,
 //!     VelocityObserver::plain(15.0, DT_S)?,
-//!     law.lift(),
+//!     law.cast(),
 //!     Observed::new(model, &settings)?,
 //!     Limits::new(drive.limit_v).with_moving_v(1.9).with_patience_s(0.1),
 //!     DT_S,

@@ -28,15 +28,15 @@ pub struct Parts<T> {
 impl<T: Real> Parts<T> {
     /// Converts to another number type.
     #[must_use]
-    pub fn lift<U: Real>(&self) -> Parts<U> {
-        let lift = |value: T| U::of(value.value());
+    pub fn cast<U: Real>(&self) -> Parts<U> {
+        let cast = |value: T| U::of(value.value());
         Parts {
-            angle_rad: lift(self.angle_rad),
-            velocity_rad_s: lift(self.velocity_rad_s),
-            error: lift(self.error),
-            base_v: lift(self.base_v),
-            compensation: self.compensation.lift(),
-            output_v: lift(self.output_v),
+            angle_rad: cast(self.angle_rad),
+            velocity_rad_s: cast(self.velocity_rad_s),
+            error: cast(self.error),
+            base_v: cast(self.base_v),
+            compensation: self.compensation.cast(),
+            output_v: cast(self.output_v),
             status: self.status,
         }
     }

@@ -13,10 +13,10 @@
 //! force is then a continuous function of the size of the gap, and its derivative is available to
 //! an optimiser.
 
-use super::{Drive, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::motion::{crossing, JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Backlash in the drive: a gap between two flanks.
@@ -74,8 +74,8 @@ impl<T: Real> State<T> {
     }
 }
 
-impl<T: Real> Effect<T> for Backlash<T> {
-    const INFO: Info = Info::new("backlash", Stage::Drive)
+described! {
+    named_effect Backlash = Info::new::<T, Self>("backlash", Stage::Drive)
         .summary(
             "play in gear, key or coupling: after a reversal the driven side rests until the \
              gap is crossed",
@@ -87,39 +87,19 @@ impl<T: Real> Effect<T> for Backlash<T> {
              its flank; a presliding bristle keeps its force while the driven side rests; on \
              a linear axis the gap is in m",
         )
-        .parameters(&[Parameter::new(
-            "gap",
-            "rad",
-            "angle between the flanks",
-            [0.0, 1.0],
-            // A gap that is crossed within a few samples is found only from a start value as small.
-            &[0.0215, 0.0043, 0.000_86],
-        )
-        .null(0.0)
-        .start(Start::DrivePlay)])
-        .needs(&[Need::NoBristle]);
-    const MOVES_JUMPS: bool = true;
-    type State = State<T>;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            gap_rad: parameters[0],
-        })
-    }
-
-    fn start(&self, motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
-        State {
-            place_m: T::ZERO,
-            closed: 0,
-            begun: false,
-            first_m: T::ZERO,
-            speed_m_s: motion.velocity_m_s,
-        }
-    }
+        .needs(&[Need::NoBristle])
+        .moves_jumps();
+    // A gap that is crossed within a few samples is found only from a start value as small.
+    gap = "gap", "rad", "angle between the flanks",
+        [0.0, 1.0], [0.0215, 0.0043, 0.000_86] null(0.0) .start(Start::DrivePlay);
 }
 
-impl<T: Real> Drive<T> for Backlash<T> {
+impl<T: Real> Backlash<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { gap_rad: p.gap }
+    }
+
+    /// Returns the motion of the journal at the end of a step to the motion `to` of the encoder.
     #[inline(always)]
     fn step(
         &self,
@@ -154,5 +134,29 @@ impl<T: Real> Drive<T> for Backlash<T> {
             load_n: to.load_n,
             temperature_c: to.temperature_c,
         }
+    }
+}
+
+impl<T: Real> Effect<T> for Backlash<T> {
+    type State = State<T>;
+
+    fn start(&self, motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
+        State {
+            place_m: T::ZERO,
+            closed: 0,
+            begun: false,
+            first_m: T::ZERO,
+            speed_m_s: motion.velocity_m_s,
+        }
+    }
+
+    #[inline(always)]
+    fn has_drive(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn drive(&self, state: &mut State<T>, rig: &Rig<T>, journal: &mut JournalMotion<T>, dt_s: T) {
+        *journal = self.step(state, journal, rig, dt_s);
     }
 }

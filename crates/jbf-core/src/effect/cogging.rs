@@ -10,13 +10,14 @@
 //!
 //! Source: Zhu & Howe (2000) for rotary machines; Otten et al. (1997) for linear ones.
 
-use super::pitch::{Pitch, PHASE, PITCH};
-use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::pitch::Pitch;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Cogging force that is periodic in the position.
 #[derive(Clone, Copy, Debug)]
@@ -25,17 +26,8 @@ pub struct Cogging<T> {
     pitch: Pitch<T>,
 }
 
-/// Descriptions of the parameters amplitude, pitch and phase.
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::new("A", "N", "amplitude", [0.0, 1e7], &[1.0])
-        .null(0.0)
-        .start(Start::Drag),
-    PITCH,
-    PHASE,
-];
-
-impl<T: Real> Effect<T> for Cogging<T> {
-    const INFO: Info = Info::new("cogging", Stage::Other)
+described! {
+    named_effect Cogging = Info::new::<T, Self>("cogging", Stage::Other)
         .summary("motor force that is periodic in the position, also at rest")
         .equation("F -> F + A sin(2 pi x/p - phi), x the position of the surface, m")
         .source("Zhu & Howe 2000; Otten et al. 1997")
@@ -43,30 +35,38 @@ impl<T: Real> Effect<T> for Cogging<T> {
             "one harmonic; cogging_2 adds a second; the position must be absolute or \
                  have the same zero in every run",
         )
-        .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
+    a = "A", "N", "amplitude", [0.0, 1e7], [1.0] null(0.0) .start(Start::Drag);
+    pitch = "pitch", "m", "length of one period, at the radius",
+        [1e-6, 1e3], [0.5, 0.2] .log().start(Start::Pitch);
+    phase_rad;
+}
+
+impl<T: Real> Cogging<T> {
+    pub(super) fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            amplitude_n: p.a,
+            pitch: Pitch::new(p.pitch, p.phase_rad),
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for Cogging<T> {
     /// Radius that converts an angle to a position, m.
     type State = T;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            amplitude_n: parameters[0],
-            pitch: Pitch::new(parameters[1], parameters[2]),
-        })
-    }
 
     fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
         rig.radius_m
     }
-}
 
-impl<T: Real> OtherFriction<T> for Cogging<T> {
     #[inline(always)]
-    fn friction_n(&self, radius_m: &T, journal: &JournalMotion<T>) -> Friction<T> {
-        Friction {
-            jump: T::ZERO,
-            smooth: self.amplitude_n * self.pitch.angle(journal.angle_rad * *radius_m).sin(),
-        }
+    fn add_friction(
+        &self,
+        radius_m: &T,
+        journal: &JournalMotion<T>,
+        sum_n: &mut Friction<T>,
+        _transmitted_n: &mut T,
+    ) {
+        sum_n.smooth += self.amplitude_n * self.pitch.angle(journal.angle_rad * *radius_m).sin();
     }
 }

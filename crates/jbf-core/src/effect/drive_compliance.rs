@@ -14,10 +14,10 @@
 //! integration method is the midpoint rule with an implicit solution for the set-valued force (a
 //! proximal step, after Moreau), which allows sticking without chattering.
 
-use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Resistance, Rig, Stage};
 use crate::motion::{sag, JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Largest number of integration steps per step of the chain.
@@ -68,74 +68,39 @@ impl<T: Real> State<T> {
     }
 }
 
-impl<T: Real> Effect<T> for DriveCompliance<T> {
-    const INFO: Info = Info::new("drive_compliance", Stage::Drive).summary("elasticity of a \
-                                                                            belt, coupling \
-                                                                            or shaft between \
-                                                                            encoder and \
-                                                                            journal").equation("J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')").source("Cohn 1998, section 5.1; Harnoy et al. 1994").limits("one \
-                                                                                                                                                                                                                                                                               spring, \
-                                                                                                                                                                                                                                                                               one \
-                                                                                                                                                                                                                                                                               inertia; \
-                                                                                                                                                                                                                                                                               higher \
-                                                                                                                                                                                                                                                                               torsional \
-                                                                                                                                                                                                                                                                               modes \
-                                                                                                                                                                                                                                                                               are \
-                                                                                                                                                                                                                                                                               not \
-                                                                                                                                                                                                                                                                               included; \
-                                                                                                                                                                                                                                                                               on \
-                                                                                                                                                                                                                                                                               a \
-                                                                                                                                                                                                                                                                               linear \
-                                                                                                                                                                                                                                                                               axis \
-                                                                                                                                                                                                                                                                               k \
-                                                                                                                                                                                                                                                                               is \
-                                                                                                                                                                                                                                                                               in \
-                                                                                                                                                                                                                                                                               N/m, \
-                                                                                                                                                                                                                                                                               c \
-                                                                                                                                                                                                                                                                               in \
-                                                                                                                                                                                                                                                                               N \
-                                                                                                                                                                                                                                                                               s/m, \
-                                                                                                                                                                                                                                                                               J \
-                                                                                                                                                                                                                                                                               in \
-                                                                                                                                                                                                                                                                               kg").parameters(&[
-            Parameter::new("k", "N m/rad", "torsional stiffness between encoder and journal", [0.1, 1e7], &[60.0, 600.0]).log().null(f64::INFINITY).start(Start::DriveStiffness),
-            Parameter::new("c", "N m s/rad", "damping in parallel to the spring", [1e-5, 1e3], &[0.1]).log().start(Start::DriveDamping),
-            Parameter::new("J", "kg m^2", "inertia of the driven side", [1e-6, 1e2], &[2e-3]).log().start(Start::DriveInertia),
-        ]).needs(&[Need::Path, Need::NoBristle]).longest_step_s(0.005);
-    // The drive rings, often faster than half the sampling rate. Frequencies that the samples
-    // cannot distinguish each give a peak of the likelihood.
-    const PEAKS: Option<&'static str> = Some("J");
-    type State = State<T>;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        let (k, j) = (parameters[0].value(), parameters[2].value());
-        Ok(Self {
-            stiffness_n_m_rad: parameters[0],
-            damping_n_m_s_rad: parameters[1],
-            inertia_kg_m2: parameters[2],
-            inner_step_s: 0.3 * crate::root::sqrt(j / k),
-        })
-    }
-
-    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> State<T> {
-        let free = Resistance {
-            level_n: T::ZERO,
-            slope_n_s_m: T::ZERO,
-        };
-        State {
-            angle_rad: motion.angle_rad,
-            speed_rad_s: motion.velocity_m_s / rig.radius_m,
-            encoder_rad: motion.angle_rad,
-            encoder_m_s: motion.velocity_m_s,
-            resistance: free,
-            before: free,
-            step_before_s: SHORTEST_STEP_S,
-        }
-    }
+described! {
+    named_effect DriveCompliance = Info::new::<T, Self>("drive_compliance", Stage::Drive)
+        .summary("elasticity of a belt, coupling or shaft between encoder and journal")
+        .equation("J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')")
+        .source("Cohn 1998, section 5.1; Harnoy et al. 1994")
+        .limits(
+            "one spring, one inertia; higher torsional modes are not included; on a linear axis \
+             k is in N/m, c in N s/m, J in kg",
+        )
+        .needs(&[Need::Path, Need::NoBristle])
+        // The drive rings, often faster than half the sampling rate. Frequencies that the samples
+        // cannot distinguish each give a peak of the likelihood.
+        .multimodal_in("J");
+    k = "k", "N m/rad", "torsional stiffness between encoder and journal",
+        [0.1, 1e7], [60.0, 600.0] null(f64::INFINITY) .log().start(Start::DriveStiffness);
+    c = "c", "N m s/rad", "damping in parallel to the spring",
+        [1e-5, 1e3], [0.1] .log().start(Start::DriveDamping);
+    j = "J", "kg m^2", "inertia of the driven side",
+        [1e-6, 1e2], [2e-3] .log().start(Start::DriveInertia);
 }
 
-impl<T: Real> Drive<T> for DriveCompliance<T> {
+impl<T: Real> DriveCompliance<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        let (k, j) = (p.k.value(), p.j.value());
+        Self {
+            stiffness_n_m_rad: p.k,
+            damping_n_m_s_rad: p.c,
+            inertia_kg_m2: p.j,
+            inner_step_s: 0.3 * crate::root::sqrt(j / k),
+        }
+    }
+
+    /// Returns the motion of the journal at the end of a step to the motion `to` of the encoder.
     #[inline(always)]
     fn step(
         &self,
@@ -220,6 +185,37 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             temperature_c: to.temperature_c,
         }
     }
+}
+
+impl<T: Real> Effect<T> for DriveCompliance<T> {
+    type State = State<T>;
+    const LONGEST_STEP_S: f64 = 0.005;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> State<T> {
+        let free = Resistance {
+            level_n: T::ZERO,
+            slope_n_s_m: T::ZERO,
+        };
+        State {
+            angle_rad: motion.angle_rad,
+            speed_rad_s: motion.velocity_m_s / rig.radius_m,
+            encoder_rad: motion.angle_rad,
+            encoder_m_s: motion.velocity_m_s,
+            resistance: free,
+            before: free,
+            step_before_s: SHORTEST_STEP_S,
+        }
+    }
+
+    #[inline(always)]
+    fn has_drive(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn drive(&self, state: &mut State<T>, rig: &Rig<T>, journal: &mut JournalMotion<T>, dt_s: T) {
+        *journal = self.step(state, journal, rig, dt_s);
+    }
 
     #[inline(always)]
     fn resist(&self, state: &mut State<T>, resistance: &Resistance<T>, dt_s: T) {
@@ -233,11 +229,17 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         state.resistance = *resistance;
     }
 
-    #[inline]
-    fn transmitted_n(&self, state: &State<T>, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
+    #[inline(always)]
+    fn transmitted_n(
+        &self,
+        state: &State<T>,
+        motion: &Motion<T>,
+        rig: &Rig<T>,
+        force_n: &mut Option<T>,
+    ) {
         let twist = motion.angle_rad - state.angle_rad;
         let slip = motion.velocity_m_s / rig.radius_m - state.speed_rad_s;
         let torque_n_m = self.stiffness_n_m_rad * twist + self.damping_n_m_s_rad * slip;
-        Some(torque_n_m / (rig.count * rig.radius_m))
+        *force_n = Some(torque_n_m / (rig.count * rig.radius_m));
     }
 }

@@ -10,10 +10,11 @@
 //!
 //! Source: Armstrong-Helouvry et al. (1994), who list this asymmetry.
 
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Dry friction that depends on the direction of motion.
@@ -22,8 +23,8 @@ pub struct DryAsymmetry<T> {
     share: T,
 }
 
-impl<T: Real> Effect<T> for DryAsymmetry<T> {
-    const INFO: Info = Info::new("dry_asymmetry", Stage::Contact)
+described! {
+    named_effect DryAsymmetry = Info::new::<T, Self>("dry_asymmetry", Stage::Contact)
         .summary("dry friction that is larger in one direction")
         .equation("F_dry -> F_dry (1 + a sgn(v))")
         .source("Armstrong-Helouvry et al. 1994")
@@ -31,31 +32,31 @@ impl<T: Real> Effect<T> for DryAsymmetry<T> {
             "with a constant dry level, only rests distinguish it from a constant force \
              (sensor_offset)",
         )
-        .parameters(&[Parameter::new(
-            "a",
-            "-",
-            "relative excess of dry friction in positive motion",
-            [-0.95, 0.95],
-            &[0.05],
-        )
-        .null(0.0)
-        .signed()])
         .needs(&[Need::NoFilm]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            share: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    a = "a", "-", "relative excess of dry friction in positive motion",
+        [-0.95, 0.95], [0.05] null(0.0) .signed();
 }
 
-impl<T: Real> Contact<T> for DryAsymmetry<T> {
+impl<T: Real> DryAsymmetry<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { share: p.a }
+    }
+}
+
+impl<T: Real> Effect<T> for DryAsymmetry<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        _state: &mut (),
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         sliding.jump *= T::ONE + self.share * journal.way();
     }
 }

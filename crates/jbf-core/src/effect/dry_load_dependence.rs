@@ -7,10 +7,11 @@
 //! A law in newtons does not depend on the load; with this effect, its dry friction is that without
 //! load. A bristle deflects towards the sum of both.
 
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Dry friction proportional to the load, in addition to the level of the law.
@@ -19,31 +20,36 @@ pub struct DryLoadDependence<T> {
     coefficient: T,
 }
 
-impl<T: Real> Effect<T> for DryLoadDependence<T> {
-    const INFO: Info = Info::new("dry_load_dependence", Stage::Contact)
+described! {
+    named_effect DryLoadDependence = Info::new::<T, Self>("dry_load_dependence", Stage::Contact)
         .summary("dry friction that grows with the load, pressure or transmitted force")
         .equation("F -> F + mu L sgn(v), L the recorded load; the level is never below zero")
         .source("Amontons 1699; Coulomb 1785; Hamon, Gautier & Garrec 2010")
         .limits("linear in the load; extrapolation beyond the recorded loads is not reliable")
-        .parameters(&[
-            Parameter::new("mu", "-", "dry friction per load", [-10.0, 10.0], &[0.1]).null(0.0),
-        ])
         .needs(&[Need::NoFilm, Need::Loads]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            coefficient: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    mu = "mu", "-", "dry friction per load", [-10.0, 10.0], [0.1] null(0.0);
 }
 
-impl<T: Real> Contact<T> for DryLoadDependence<T> {
+impl<T: Real> DryLoadDependence<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { coefficient: p.mu }
+    }
+}
+
+impl<T: Real> Effect<T> for DryLoadDependence<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        _state: &mut (),
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         let level = sliding.jump + self.coefficient * journal.load_n;
         sliding.jump = if level < T::ZERO { T::ZERO } else { level };
     }

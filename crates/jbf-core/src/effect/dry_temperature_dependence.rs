@@ -6,11 +6,11 @@
 //! expansion changes the preload of a gear, a bearing or a seal. The dry friction is limited to
 //! values of zero and above.
 
-use super::vogel::REFERENCE;
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Dry friction that depends on the recorded temperature.
@@ -20,8 +20,8 @@ pub struct DryTemperatureDependence<T> {
     reference_c: T,
 }
 
-impl<T: Real> Effect<T> for DryTemperatureDependence<T> {
-    const INFO: Info = Info::new("dry_temperature_dependence", Stage::Contact)
+described! {
+    named_effect DryTemperatureDependence = Info::new::<T, Self>("dry_temperature_dependence", Stage::Contact)
         .summary("dry friction that rises or falls with the recorded temperature")
         .equation("F_c -> F_c (1 + a (T - T_0)), T the recorded temperature; never below zero")
         .source("Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
@@ -29,34 +29,35 @@ impl<T: Real> Effect<T> for DryTemperatureDependence<T> {
             "linear in the temperature; extrapolation beyond the recorded temperatures \
                  is not reliable",
         )
-        .parameters(&[
-            Parameter::new(
-                "a_1_k",
-                "1/K",
-                "relative change of the dry friction per kelvin",
-                [-0.2, 0.2],
-                &[-0.01],
-            )
-            .null(0.0),
-            REFERENCE,
-        ])
         .needs(&[Need::NoFilm, Need::Temperatures]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            slope_1_k: parameters[0],
-            reference_c: parameters[1],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    a_1_k = "a_1_k", "1/K", "relative change of the dry friction per kelvin",
+        [-0.2, 0.2], [-0.01] null(0.0);
+    T_0_c;
 }
 
-impl<T: Real> Contact<T> for DryTemperatureDependence<T> {
+impl<T: Real> DryTemperatureDependence<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            slope_1_k: p.a_1_k,
+            reference_c: p.t_0_c,
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for DryTemperatureDependence<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        _state: &mut (),
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         if let Some(temperature_c) = journal.temperature_c {
             let warmer_k = temperature_c - self.reference_c;
             sliding.jump *= (T::ONE + self.slope_1_k * warmer_k).max(T::ZERO);

@@ -5,10 +5,11 @@
 //!
 //! Source: Kato et al. (1972); Cohn (1998), section 2.1.5.
 
-use super::{Contact, Effect, Info, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Static friction that rises with the length of a rest.
@@ -28,50 +29,32 @@ pub struct State<T> {
     resting: bool,
 }
 
-impl<T: Real> Effect<T> for DwellStiction<T> {
-    const INFO: Info = Info::new("dwell_stiction", Stage::Contact)
+described! {
+    named_effect DwellStiction = Info::new::<T, Self>("dwell_stiction", Stage::Contact)
         .summary("static friction that grows during a rest")
         .equation("f -> f + a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0) sgn(v)")
         .source("Kato et al. 1972; Cohn 1998, section 2.1.5")
-        .limits("a rest has a speed of exactly zero; creep during a rest is not included")
-        .parameters(&[
-            Parameter::new(
-                "a",
-                "-",
-                "friction coefficient added after a very long rest",
-                [0.0, 1e3],
-                &[0.08],
-            )
-            .null(0.0),
-            Parameter::new(
-                "t_0_s",
-                "s",
-                "rest duration for 63 % of it",
-                [1e-3, 1e6],
-                &[3.0],
-            )
-            .log(),
-            Parameter::new("m", "-", "exponent of the growth", [0.05, 5.0], &[0.7]).log(),
-            Parameter::new(
-                "s_0",
-                "m",
-                "sliding distance in which it decays to 1/e",
-                [1e-6, 1e2],
-                &[2e-3, 2e-2],
-            )
-            .log(),
-        ]);
-    type State = State<T>;
+        .limits("a rest has a speed of exactly zero; creep during a rest is not included");
+    a = "a", "-", "friction coefficient added after a very long rest", [0.0, 1e3], [0.08] null(0.0);
+    t_0_s = "t_0_s", "s", "rest duration for 63 % of it", [1e-3, 1e6], [3.0] .log();
+    m = "m", "-", "exponent of the growth", [0.05, 5.0], [0.7] .log();
+    s_0 = "s_0", "m", "sliding distance in which it decays to 1/e",
+        [1e-6, 1e2], [2e-3, 2e-2] .log();
+}
 
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            height: parameters[0],
-            inverse_time_1_s: T::ONE / parameters[1],
-            exponent: parameters[2],
-            inverse_distance_1_m: T::ONE / parameters[3],
-        })
+impl<T: Real> DwellStiction<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            height: p.a,
+            inverse_time_1_s: T::ONE / p.t_0_s,
+            exponent: p.m,
+            inverse_distance_1_m: T::ONE / p.s_0,
+        }
     }
+}
+
+impl<T: Real> Effect<T> for DwellStiction<T> {
+    type State = State<T>;
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
         State {
@@ -80,21 +63,16 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
             resting: false,
         }
     }
-}
-
-impl<T: Real> Contact<T> for DwellStiction<T> {
-    #[inline(always)]
-    fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
-        if state.rest_s.value() <= 0.0 {
-            return;
-        }
-        let grown = T::ONE - (-(state.rest_s * self.inverse_time_1_s).powf(self.exponent)).exp();
-        let left = (-(state.slid_m * self.inverse_distance_1_m)).exp();
-        sliding.jump += self.height * grown * left;
-    }
 
     #[inline(always)]
-    fn step(&self, state: &mut State<T>, from: &JournalMotion<T>, to: &JournalMotion<T>, dt_s: T) {
+    fn contact(
+        &self,
+        state: &mut State<T>,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
         if from.velocity_m_s == T::ZERO && to.velocity_m_s == T::ZERO {
             if !state.resting {
                 state.rest_s = T::ZERO;
@@ -106,5 +84,11 @@ impl<T: Real> Contact<T> for DwellStiction<T> {
             state.resting = false;
             state.slid_m += from.distance_m(to, dt_s);
         }
+        if state.rest_s.value() <= 0.0 {
+            return;
+        }
+        let grown = T::ONE - (-(state.rest_s * self.inverse_time_1_s).powf(self.exponent)).exp();
+        let left = (-(state.slid_m * self.inverse_distance_1_m)).exp();
+        sliding.jump += self.height * grown * left;
     }
 }

@@ -6,11 +6,11 @@
 //! The link of a joint that follows other joints turns with all of them. The angle theta of such a
 //! link is the angle of the joint plus [`JournalMotion::weight_offset_rad`].
 
-use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -22,8 +22,8 @@ pub struct Gravity<T> {
     sin_offset: T,
 }
 
-impl<T: Real> Effect<T> for Gravity<T> {
-    const INFO: Info = Info::new("gravity", Stage::Other)
+described! {
+    named_effect Gravity = Info::new::<T, Self>("gravity", Stage::Other)
         .summary("weight of a link, or an unbalance, that the drive carries")
         .equation("F -> F + G sin(theta - theta_0)")
         .transmitted()
@@ -32,50 +32,41 @@ impl<T: Real> Effect<T> for Gravity<T> {
             "one link; other links at rest, unless weight_angle_rad is recorded; the angle \
              must be absolute or have the same zero in every run",
         )
-        .parameters(&[
-            Parameter::new(
-                "G",
-                "N",
-                "weight of the horizontal link, as a force at the radius",
-                [0.0, 1e7],
-                &[1.0],
-            )
-            .null(0.0)
-            .start(Start::Kinetic),
-            Parameter::new(
-                "theta_0_rad",
-                "rad",
-                "angle at which the link hangs down",
-                [-4.0 * PI, 4.0 * PI],
-                &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
-            )
-            .period(TAU)
-            .signed(),
-        ])
         .needs(&[Need::NoFilm, Need::Angle]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            weight_n: parameters[0],
-            cos_offset: parameters[1].cos(),
-            sin_offset: parameters[1].sin(),
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    g = "G", "N", "weight of the horizontal link, as a force at the radius",
+        [0.0, 1e7], [1.0] null(0.0) .start(Start::Kinetic);
+    theta_0_rad = "theta_0_rad", "rad", "angle at which the link hangs down",
+        [-4.0 * PI, 4.0 * PI], [0.0, FRAC_PI_2, PI, -FRAC_PI_2] .period(TAU).signed();
 }
 
-impl<T: Real> OtherFriction<T> for Gravity<T> {
+impl<T: Real> Gravity<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            weight_n: p.g,
+            cos_offset: p.theta_0_rad.cos(),
+            sin_offset: p.theta_0_rad.sin(),
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for Gravity<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
+    fn add_friction(
+        &self,
+        _state: &(),
+        journal: &JournalMotion<T>,
+        sum_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
         let theta = journal.angle_rad + journal.weight_offset_rad;
         // sin(theta - theta_0) from the precomputed cosine and sine of the offset.
         let level = theta.sin() * self.cos_offset - theta.cos() * self.sin_offset;
-        Friction {
-            jump: T::ZERO,
-            smooth: self.weight_n * level,
-        }
+        let force_n = self.weight_n * level;
+        sum_n.smooth += force_n;
+        *transmitted_n += force_n;
     }
 }

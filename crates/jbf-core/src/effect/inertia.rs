@@ -3,10 +3,11 @@
 //! Source: d'Alembert; the housing on the arm of Cohn's apparatus (1998, section 4.1), and any
 //! drive force measured ahead of the moving mass.
 
-use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Reflected inertia of a mass in the force path.
@@ -15,8 +16,8 @@ pub struct Inertia<T> {
     mass_kg: T,
 }
 
-impl<T: Real> Effect<T> for Inertia<T> {
-    const INFO: Info = Info::new("inertia", Stage::Other)
+described! {
+    named_effect Inertia = Info::new::<T, Self>("inertia", Stage::Other)
         .summary("inertial force of a mass, contained in the measured force")
         .equation("F -> F + m_e dv/dt")
         .transmitted()
@@ -24,33 +25,31 @@ impl<T: Real> Effect<T> for Inertia<T> {
         .limits(
             "a rigid mass; the acceleration is derived from the recorded motion and has \
                  its noise",
-        )
-        .parameters(&[Parameter::new(
-            "m_e",
-            "kg",
-            "effective mass at the sliding surface",
-            [0.0, 1e6],
-            &[4.0, 100.0],
-        )
-        .null(0.0)]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            mass_kg: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+        );
+    m_e = "m_e", "kg", "effective mass at the sliding surface", [0.0, 1e6], [4.0, 100.0] null(0.0);
 }
 
-impl<T: Real> OtherFriction<T> for Inertia<T> {
+impl<T: Real> Inertia<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { mass_kg: p.m_e }
+    }
+}
+
+impl<T: Real> Effect<T> for Inertia<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
-        Friction {
-            jump: T::ZERO,
-            smooth: self.mass_kg * journal.acceleration_m_s2,
-        }
+    fn add_friction(
+        &self,
+        _state: &(),
+        journal: &JournalMotion<T>,
+        sum_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        let force_n = self.mass_kg * journal.acceleration_m_s2;
+        sum_n.smooth += force_n;
+        *transmitted_n += force_n;
     }
 }

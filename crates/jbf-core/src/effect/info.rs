@@ -2,6 +2,7 @@
 //! bounds and start values of the fit.
 
 use super::need::Need;
+use super::Effect;
 use crate::error::ParameterError;
 use crate::law;
 use crate::page::{in_bounds, Parameter};
@@ -44,6 +45,8 @@ impl fmt::Display for Stage {
 pub struct Info {
     /// Unique name of the effect in files and options.
     pub name: &'static str,
+    /// Name of the type in Rust: `effect::NAME::RUST_TYPE`.
+    pub rust_type: &'static str,
     /// Stage of the signal chain at which the effect acts.
     pub stage: Stage,
     /// Physical meaning of the effect in a machine, in one line.
@@ -59,8 +62,10 @@ pub struct Info {
     /// Requirements on the law and the record; the effect has no meaning if one is not met.
     pub needs: &'static [Need],
     /// Longest step, s, with which the error of the effect is at most one per cent of a typical
-    /// noise.
+    /// noise; the value is that of [`Effect::LONGEST_STEP_S`].
     pub longest_step_s: f64,
+    /// True if the effect has a state.
+    pub has_memory: bool,
     /// True if the effect is a force other than friction that the transmission of the drive
     /// carries, such as a weight.
     pub transmitted: bool,
@@ -72,13 +77,25 @@ pub struct Info {
     ///
     /// Only a reversal of its input erases the influence of such an initial state.
     pub unknown_start: bool,
+    /// True if a parameter changes the instants at which friction jumps.
+    ///
+    /// A fit must then exclude the samples next to such a jump.
+    pub moves_jumps: bool,
+    /// True if the predicted force depends on a jump for longer than the step of the jump.
+    ///
+    /// An error in the instant of the jump then affects more samples than those next to it.
+    pub spreads_jumps: bool,
+    /// Name of the parameter along which the likelihood may have several maxima; a fit then
+    /// searches for higher ones.
+    pub multimodal_in: Option<&'static str>,
 }
 
 impl Info {
-    /// Creates a description without parameters and requirements, with a longest step of 20 ms.
-    pub const fn new(name: &'static str, stage: Stage) -> Self {
+    /// Creates a description of the effect `E` without parameters and requirements.
+    pub(crate) const fn new<T: Real, E: Effect<T>>(name: &'static str, stage: Stage) -> Self {
         Self {
             name,
+            rust_type: "",
             stage,
             summary: "",
             equation: "",
@@ -86,71 +103,93 @@ impl Info {
             limits: "",
             parameters: &[],
             needs: &[],
-            longest_step_s: 0.02,
+            longest_step_s: E::LONGEST_STEP_S,
+            has_memory: core::mem::size_of::<E::State>() > 0,
             transmitted: false,
             further_of: None,
             unknown_start: false,
+            moves_jumps: false,
+            spreads_jumps: false,
+            multimodal_in: None,
         }
     }
 
     /// Sets the physical meaning of the effect in a machine, in one line.
-    pub const fn summary(mut self, text: &'static str) -> Self {
+    pub(crate) const fn summary(mut self, text: &'static str) -> Self {
         self.summary = text;
         self
     }
 
     /// Sets the equation of the effect, in plain characters.
-    pub const fn equation(mut self, text: &'static str) -> Self {
+    pub(crate) const fn equation(mut self, text: &'static str) -> Self {
         self.equation = text;
         self
     }
 
     /// Sets the source of the equation.
-    pub const fn source(mut self, text: &'static str) -> Self {
+    pub(crate) const fn source(mut self, text: &'static str) -> Self {
         self.source = text;
         self
     }
 
     /// Sets the limits of validity of the equation.
-    pub const fn limits(mut self, text: &'static str) -> Self {
+    pub(crate) const fn limits(mut self, text: &'static str) -> Self {
         self.limits = text;
         self
     }
 
+    /// Sets the name of the type in Rust.
+    pub(crate) const fn rust_type(mut self, name: &'static str) -> Self {
+        self.rust_type = name;
+        self
+    }
+
     /// Sets the descriptions of the parameters, in the order of their values.
-    pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
+    pub(crate) const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
         self.parameters = pages;
         self
     }
 
     /// Sets the requirements on the law and the record.
-    pub const fn needs(mut self, needs: &'static [Need]) -> Self {
+    pub(crate) const fn needs(mut self, needs: &'static [Need]) -> Self {
         self.needs = needs;
         self
     }
 
-    /// Sets the longest step with which the effect is sufficiently accurate, s.
-    pub const fn longest_step_s(mut self, step_s: f64) -> Self {
-        self.longest_step_s = step_s;
-        self
-    }
-
     /// Marks the effect as a force that the transmission of the drive carries.
-    pub const fn transmitted(mut self) -> Self {
+    pub(crate) const fn transmitted(mut self) -> Self {
         self.transmitted = true;
         self
     }
 
     /// Marks the effect as a second instance of the effect `of`.
-    pub const fn further(mut self, of: &'static str) -> Self {
+    pub(crate) const fn further(mut self, of: &'static str) -> Self {
         self.further_of = Some(of);
         self
     }
 
     /// Marks the effect as one whose initial state the first sample does not determine and that
     /// persists.
-    pub const fn unknown_start(mut self) -> Self {
+    pub(crate) const fn unknown_start(mut self) -> Self {
         self.unknown_start = true;
+        self
+    }
+
+    /// Marks the effect as one whose parameters change the instants at which friction jumps.
+    pub(crate) const fn moves_jumps(mut self) -> Self {
+        self.moves_jumps = true;
+        self
+    }
+
+    /// Marks the effect as one after which the force depends on a jump for longer than a step.
+    pub(crate) const fn spreads_jumps(mut self) -> Self {
+        self.spreads_jumps = true;
+        self
+    }
+
+    /// Sets the parameter along which the likelihood may have several maxima.
+    pub(crate) const fn multimodal_in(mut self, parameter: &'static str) -> Self {
+        self.multimodal_in = Some(parameter);
         self
     }
 
@@ -179,4 +218,17 @@ impl Info {
                 .is_some_and(|null| !null.is_finite() && v.value() == null)
         })
     }
+}
+
+/// Effect of the catalogue, which is created from a list of values.
+pub trait Named<T: Real>: Effect<T> {
+    /// Description of the effect in the catalogue.
+    const INFO: Info;
+
+    /// Creates the effect from its parameters, in the order of `INFO.parameters`.
+    ///
+    /// # Errors
+    /// Reports the first parameter that is missing, out of its bounds, or infinite where the effect
+    /// vanishes. In the last case the effect must be omitted.
+    fn build(values: &[T]) -> Result<Self, ParameterError>;
 }

@@ -11,9 +11,10 @@
 //!
 //! At the nominal load the effect is zero, so records at one load do not determine the exponents.
 
-use super::{Effect, Info, Loading, Need, Parameter, Rig, Scales, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Scales, Stage};
 use crate::motion::Motion;
+use crate::page::described;
 use crate::real::Real;
 
 /// Limit of the power law: load ratios above this value or below its inverse are replaced by the
@@ -33,12 +34,8 @@ pub struct State<T> {
     scales: Scales<T>,
 }
 
-const fn exponent(name: &'static str, meaning: &'static str, starts: &'static [f64]) -> Parameter {
-    Parameter::new(name, "-", meaning, [-3.0, 3.0], starts).null(0.0)
-}
-
-impl<T: Real> Effect<T> for LoadDependence<T> {
-    const INFO: Info = Info::new("load_dependence", Stage::Film)
+described! {
+    named_effect LoadDependence = Info::new::<T, Self>("load_dependence", Stage::Film)
         .summary("transition speed and asperity stiffness that change with the load")
         .equation("U_tr -> U_tr (F/F_0)^p, K0 -> K0 (F/F_0)^q, F_0 the rig's load")
         .source("Cohn 1998, Tables 4.2 to 4.5; Lu, Khonsari & Gelinck 2006 for U_tr")
@@ -46,19 +43,21 @@ impl<T: Real> Effect<T> for LoadDependence<T> {
             "power law, valid within the tested loads; constant below 0.1 and above 10 times \
              the rig's load; loads that change faster than the film responds are untested",
         )
-        .parameters(&[
-            exponent("p", "exponent of U_tr", &[0.8]),
-            exponent("q", "exponent of K0", &[0.8]),
-        ])
         .needs(&[Need::Film, Need::Loads]);
-    type State = State<T>;
+    p = "p", "-", "exponent of U_tr", [-3.0, 3.0], [0.8] null(0.0);
+    q = "q", "-", "exponent of K0", [-3.0, 3.0], [0.8] null(0.0);
+}
 
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            exponents: [parameters[0], parameters[1]],
-        })
+impl<T: Real> LoadDependence<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            exponents: [p.p, p.q],
+        }
     }
+}
+
+impl<T: Real> Effect<T> for LoadDependence<T> {
+    type State = State<T>;
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
         State {
@@ -69,11 +68,9 @@ impl<T: Real> Effect<T> for LoadDependence<T> {
             },
         }
     }
-}
 
-impl<T: Real> Loading<T> for LoadDependence<T> {
     #[inline(always)]
-    fn scales(&self, state: &mut State<T>, share: T) -> Scales<T> {
+    fn scales(&self, state: &mut State<T>, scales: &mut Option<Scales<T>>, share: T) {
         if share.value() != state.share.value() {
             let held = share.max(T::of(1.0 / FURTHEST)).min(T::of(FURTHEST));
             let [speed, stiffness] = self.exponents.map(|e| held.powf(e));
@@ -85,6 +82,14 @@ impl<T: Real> Loading<T> for LoadDependence<T> {
                 },
             };
         }
-        state.scales
+        let own = state.scales;
+        let before = scales.unwrap_or(Scales {
+            transition_speed: T::ONE,
+            stiffness: T::ONE,
+        });
+        *scales = Some(Scales {
+            transition_speed: before.transition_speed * own.transition_speed,
+            stiffness: before.stiffness * own.stiffness,
+        });
     }
 }

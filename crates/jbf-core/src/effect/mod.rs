@@ -7,8 +7,12 @@
 //!                  -> contact -> other -> instrument
 //! ```
 //!
-//! An effect is independent of the other stages. To add an effect, write its file, declare the
-//! module below, and add the effect to the line of its stage in `catalogue.rs`.
+//! An effect is independent of the other stages. Each module has a type for the effect, and the
+//! struct `Parameters` with which its `new` creates it. [`Effects::set`] creates an effect by name
+//! from a list of values.
+//!
+//! To add an effect, write its file with `described!` and [`Effect`], declare the module below, and
+//! add the effect to the line of its stage in `catalogue.rs`.
 
 pub mod backlash;
 pub mod cogging;
@@ -55,63 +59,19 @@ mod compose;
 mod info;
 mod need;
 mod pitch;
-pub mod place;
 mod registry;
-pub mod set;
 mod stage;
 mod vogel;
 
 pub use crate::law::Scales;
 pub use crate::page::Parameter;
-pub use catalogue::{
-    fits, moves_jumps, peaks, spreads_jumps, type_names, Effects, OccupiedStages, States, CATALOGUE,
-};
-pub use info::{Info, Stage};
+pub use catalogue::{Effects, OccupiedStages, States, CATALOGUE};
+pub use info::{Info, Named, Stage};
 pub use need::Need;
-pub use place::{
-    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, InTransmission,
-    Place, UnderLoad,
-};
-pub use set::EffectSet;
-pub use stage::{
-    Bristle, Contact, Drive, Film, Instrument, Loading, Lubricant, OtherFriction, Resistance,
-    Signal, Transmission,
-};
+pub use stage::{Effect, Resistance, Signal};
 
 use crate::bearing::Bearing;
-use crate::error::ParameterError;
-use crate::motion::Motion;
 use crate::real::Real;
-use core::fmt::Debug;
-
-/// Effect in a signal chain: a description for the catalogue, a constructor that checks the
-/// parameters, and a state.
-pub trait Effect<T: Real>: Copy + Debug {
-    /// Description of the effect in the catalogue.
-    const INFO: Info;
-    /// True if a parameter changes the instants at which friction jumps.
-    ///
-    /// A fit must then exclude the samples next to such a jump.
-    const MOVES_JUMPS: bool = false;
-    /// True if the predicted force depends on a jump for longer than the step of the jump.
-    ///
-    /// An error in the instant of the jump then affects more samples than those next to it.
-    const SPREADS_JUMPS: bool = false;
-    /// Name of the parameter along which the likelihood may have several maxima; a fit then
-    /// searches for higher ones.
-    const PEAKS: Option<&'static str> = None;
-    /// State of the effect in the course of a run; `()` for most effects.
-    type State: Copy + Debug;
-
-    /// Creates the effect from its parameters, in the order of `INFO.parameters`.
-    ///
-    /// # Errors
-    /// Reports the first parameter that is missing or out of its bounds.
-    fn new(parameters: &[T]) -> Result<Self, ParameterError>;
-
-    /// Returns the state at the start of a run that begins with `motion`.
-    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
-}
 
 /// Properties of the rig that effects need.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +80,13 @@ pub struct Rig<T> {
     pub radius_m: T,
     /// Number of bearings on the shaft.
     pub count: T,
+}
+
+impl<T: Real> Default for Rig<T> {
+    /// Returns the properties of a linear axis with one sliding surface.
+    fn default() -> Self {
+        Self::on(None)
+    }
 }
 
 impl<T: Real> Rig<T> {

@@ -16,7 +16,8 @@ pub enum Need {
     NoBristle,
     /// The law has no dry friction that is independent of the load.
     NoDryLevel,
-    /// Another effect has a force that the drive transmits ([`super::Info::transmitted`]).
+    /// Another effect has a force that the drive transmits, see
+    /// [`transmitted`](field@super::Info::transmitted).
     Transmitted,
     /// The record has the angle of the shaft.
     Angle,
@@ -49,7 +50,7 @@ impl Need {
 
     /// Returns true if the law meets the requirement, or if the requirement does not concern the
     /// law.
-    pub const fn met_by(self, law: &law::Info) -> bool {
+    pub(crate) const fn met_by(self, law: &law::Info) -> bool {
         match self {
             Need::Film => law.has_film,
             Need::NoFilm => !law.has_film,

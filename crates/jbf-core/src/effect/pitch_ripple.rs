@@ -7,13 +7,14 @@
 //! Source: Armstrong-Helouvry (1991), chapter 3, where the friction of gears varies with the pitch
 //! of the teeth.
 
-use super::pitch::{Pitch, PHASE, PITCH};
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::pitch::Pitch;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Friction that is periodic in the position with a given pitch.
 #[derive(Clone, Copy, Debug)]
@@ -22,22 +23,8 @@ pub struct PitchRipple<T> {
     pitch: Pitch<T>,
 }
 
-/// Descriptions of the parameters amplitude, pitch and phase.
-pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::new(
-        "a",
-        "-",
-        "relative amplitude of the ripple",
-        [0.0, 1.0],
-        &[0.1],
-    )
-    .null(0.0),
-    PITCH.start(Start::RipplePitch),
-    PHASE,
-];
-
-impl<T: Real> Effect<T> for PitchRipple<T> {
-    const INFO: Info = Info::new("pitch_ripple", Stage::Contact)
+described! {
+    named_effect PitchRipple = Info::new::<T, Self>("pitch_ripple", Stage::Contact)
         .summary("friction that is periodic in the position: pitch of a screw, teeth, balls")
         .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the position of the surface, m")
         .source("Armstrong-Helouvry 1991, chapter 3")
@@ -45,27 +32,39 @@ impl<T: Real> Effect<T> for PitchRipple<T> {
             "one harmonic; pitch_ripple_2 adds a second; the position must be absolute \
                  or have the same zero in every run",
         )
-        .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
+    a = "a", "-", "relative amplitude of the ripple", [0.0, 1.0], [0.1] null(0.0);
+    pitch = "pitch", "m", "length of one period, at the radius",
+        [1e-6, 1e3], [0.5, 0.2] .log().start(Start::RipplePitch);
+    phase_rad;
+}
+
+impl<T: Real> PitchRipple<T> {
+    pub(super) fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            depth: p.a,
+            pitch: Pitch::new(p.pitch, p.phase_rad),
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for PitchRipple<T> {
     /// Radius that converts an angle to a position, m.
     type State = T;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            depth: parameters[0],
-            pitch: Pitch::new(parameters[1], parameters[2]),
-        })
-    }
 
     fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
         rig.radius_m
     }
-}
 
-impl<T: Real> Contact<T> for PitchRipple<T> {
     #[inline(always)]
-    fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        radius_m: &mut T,
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         let wave = self.pitch.angle(journal.angle_rad * *radius_m).cos();
         let factor = T::ONE + self.depth * wave;
         sliding.jump *= factor;

@@ -6,41 +6,52 @@
 //!
 //! Source: as for `pitch_ripple`.
 
-use super::pitch_ripple::{PitchRipple, PARAMETERS};
-use super::{Contact, Effect, Info, Need, Rig, Stage};
-use crate::error::ParameterError;
+use super::pitch_ripple::PitchRipple;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Friction that is periodic in the position with a second pitch.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondPitchRipple<T>(PitchRipple<T>);
 
-impl<T: Real> Effect<T> for SecondPitchRipple<T> {
-    const INFO: Info = Info::new("pitch_ripple_2", Stage::Contact)
+described! {
+    named_effect SecondPitchRipple = Info::new::<T, Self>("pitch_ripple_2", Stage::Contact)
         .summary("second periodic variation of friction: a harmonic of the first, or another pitch")
         .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the position of the surface, m")
         .source("Armstrong-Helouvry 1991, chapter 3")
         .limits("one harmonic; the position must be absolute or have the same zero in every run")
-        .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position])
         .further("pitch_ripple");
+    as super::pitch_ripple;
+}
+
+impl<T: Real> SecondPitchRipple<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self(PitchRipple::with_parameters(p))
+    }
+}
+
+impl<T: Real> Effect<T> for SecondPitchRipple<T> {
     /// Radius that converts an angle to a position, m.
     type State = T;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        PitchRipple::new(parameters).map(Self)
-    }
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> T {
         self.0.start(motion, rig)
     }
-}
 
-impl<T: Real> Contact<T> for SecondPitchRipple<T> {
     #[inline(always)]
-    fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
-        self.0.apply(radius_m, journal, sliding);
+    fn contact(
+        &self,
+        radius_m: &mut T,
+        from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
+        self.0.contact(radius_m, from, journal, sliding, dt_s);
     }
 }

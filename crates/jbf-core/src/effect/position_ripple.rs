@@ -3,10 +3,11 @@
 //! Source: Cohn (1998), section 2.4.1, after Armstrong-Helouvry's look-up tables of friction
 //! against joint angle; in a journal, the cause is out-of-roundness.
 
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -18,8 +19,8 @@ pub struct PositionRipple<T> {
     sin_offset: T,
 }
 
-impl<T: Real> Effect<T> for PositionRipple<T> {
-    const INFO: Info = Info::new("position_ripple", Stage::Contact)
+described! {
+    named_effect PositionRipple = Info::new::<T, Self>("position_ripple", Stage::Contact)
         .summary("friction that varies once per revolution (roundness, alignment)")
         .equation("f -> f (1 + a cos(theta - theta_0))")
         .source("Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991")
@@ -27,43 +28,36 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
             "one harmonic per revolution; belts and gears add others; the angle must be \
              absolute or have the same zero in every run",
         )
-        .parameters(&[
-            Parameter::new(
-                "a",
-                "-",
-                "relative amplitude of the ripple",
-                [0.0, 1.0],
-                &[0.1],
-            )
-            .null(0.0),
-            Parameter::new(
-                "theta_0_rad",
-                "rad",
-                "angle of maximum friction",
-                [-4.0 * PI, 4.0 * PI],
-                &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
-            )
-            .period(TAU)
-            .signed(),
-        ])
         .needs(&[Need::Angle]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            depth: parameters[0],
-            cos_offset: parameters[1].cos(),
-            sin_offset: parameters[1].sin(),
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    a = "a", "-", "relative amplitude of the ripple", [0.0, 1.0], [0.1] null(0.0);
+    theta_0_rad = "theta_0_rad", "rad", "angle of maximum friction",
+        [-4.0 * PI, 4.0 * PI], [0.0, FRAC_PI_2, PI, -FRAC_PI_2] .period(TAU).signed();
 }
 
-impl<T: Real> Contact<T> for PositionRipple<T> {
+impl<T: Real> PositionRipple<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            depth: p.a,
+            cos_offset: p.theta_0_rad.cos(),
+            sin_offset: p.theta_0_rad.sin(),
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for PositionRipple<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        _state: &mut (),
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         // cos(theta - theta_0) from the precomputed cosine and sine of the offset.
         let wave =
             journal.angle_rad.cos() * self.cos_offset + journal.angle_rad.sin() * self.sin_offset;

@@ -10,11 +10,11 @@
 //! With `c = sigma z` this is a relaxation of c towards `f sgn(v)` over distance. A step is
 //! therefore solved exactly in the sliding distance, and any stiffness is stable.
 
-use super::{Bristle, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::law::bristle::bent;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::path::legs;
 use crate::real::Real;
 
@@ -24,8 +24,8 @@ pub struct Presliding<T> {
     stiffness_1_m: T,
 }
 
-impl<T: Real> Effect<T> for Presliding<T> {
-    const INFO: Info = Info::new("presliding", Stage::Contact)
+described! {
+    named_effect Presliding = Info::new::<T, Self>("presliding", Stage::Contact)
         .summary(
             "elastic deflection of the contact before sliding: after a reversal \
                   friction changes over a distance",
@@ -39,51 +39,48 @@ impl<T: Real> Effect<T> for Presliding<T> {
             "one stiffness, no memory of inner loops, drifts under small vibration; \
              elasto-plastic models are better below the breakaway distance",
         )
-        .parameters(&[Parameter::new(
-            "sigma",
-            "1/m",
-            "contact stiffness per load",
-            [1.0, 1e12],
-            &[3e3, 3e2, 3e4, 3e5],
-        )
-        .log()
-        .null(f64::INFINITY)
-        .start(Start::Stiffness)])
-        .needs(&[Need::NoBristle])
-        .longest_step_s(0.01);
-    type State = T;
+        .needs(&[Need::NoBristle]);
+    sigma = "sigma", "1/m", "contact stiffness per load",
+        [1.0, 1e12], [3e3, 3e2, 3e4, 3e5] null(f64::INFINITY) .log().start(Start::Stiffness);
+}
 
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            stiffness_1_m: parameters[0],
-        })
+impl<T: Real> Presliding<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            stiffness_1_m: p.sigma,
+        }
     }
+}
+
+impl<T: Real> Effect<T> for Presliding<T> {
+    type State = T;
+    const LONGEST_STEP_S: f64 = 0.01;
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
         T::ZERO
     }
-}
-
-impl<T: Real> Bristle<T> for Presliding<T> {
-    fn first(&self, state: &mut T, journal: &JournalMotion<T>, magnitude: T) -> T {
-        *state = magnitude * journal.velocity_m_s.sign();
-        *state
-    }
 
     #[inline(always)]
-    fn step(
+    fn bristle(
         &self,
         state: &mut T,
         from: &JournalMotion<T>,
         to: &JournalMotion<T>,
+        deflected: &mut Option<T>,
         magnitude: [T; 2],
         dt_s: T,
-    ) -> T {
-        let turning = |share| magnitude[0] + (magnitude[1] - magnitude[0]) * share;
-        for leg in legs(from, to, magnitude, turning, dt_s).iter().flatten() {
-            *state = bent(*state, leg, self.stiffness_1_m);
+    ) {
+        if deflected.is_some() {
+            return;
         }
-        *state
+        if dt_s > T::ZERO {
+            let turning = |share| magnitude[0] + (magnitude[1] - magnitude[0]) * share;
+            for leg in legs(from, to, magnitude, turning, dt_s).iter().flatten() {
+                *state = bent(*state, leg, self.stiffness_1_m);
+            }
+        } else {
+            *state = magnitude[1] * to.velocity_m_s.sign();
+        }
+        *deflected = Some(*state);
     }
 }

@@ -4,13 +4,26 @@
 //! The list in `catalogue.rs` is its input. The macro generates two structs with one field per
 //! stage: the selected effects, and their states.
 
-use super::place::Place;
-use super::EffectSet;
+use super::{Effect, Named};
 use crate::error::ParameterError;
 use crate::real::Real;
 
+/// Implements [`Named`] for an effect with `Parameters`.
+macro_rules! named_effect {
+    ($Owner:ident $info:expr) => {
+        impl<T: $crate::real::Real> $crate::effect::Named<T> for $Owner<T> {
+            const INFO: $crate::effect::Info =
+                $info.rust_type(stringify!($Owner)).parameters(PARAMETERS);
+
+            fn build(values: &[T]) -> Result<Self, $crate::error::ParameterError> {
+                Parameters::of(values).map(Self::with_parameters)
+            }
+        }
+    };
+}
+
 /// Optional effects of one stage of the catalogue, as nested pairs.
-pub(crate) trait Shelf<T: Real>: EffectSet<T> {
+pub(crate) trait Shelf<T: Real>: Effect<T> {
     /// Stage without effects.
     const EMPTY: Self;
 
@@ -36,7 +49,7 @@ impl<T: Real> Shelf<T> for () {
     }
 }
 
-impl<T: Real, P: Place<T>, S: Shelf<T>> Shelf<T> for (Option<P>, S) {
+impl<T: Real, E: Named<T>, S: Shelf<T>> Shelf<T> for (Option<E>, S) {
     const EMPTY: Self = (None, S::EMPTY);
 
     fn is_empty(&self) -> bool {
@@ -44,14 +57,14 @@ impl<T: Real, P: Place<T>, S: Shelf<T>> Shelf<T> for (Option<P>, S) {
     }
 
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>> {
-        if name != P::INFO.name {
+        if name != E::INFO.name {
             return self.1.set(name, parameters);
         }
-        Some(P::INFO.check(parameters).and_then(|()| {
-            self.0 = if P::INFO.absent(parameters) {
+        Some(E::INFO.check(parameters).and_then(|()| {
+            self.0 = if E::INFO.absent(parameters) {
                 None
             } else {
-                Some(P::new(parameters)?)
+                Some(E::build(parameters)?)
             };
             Ok(())
         }))
@@ -60,95 +73,66 @@ impl<T: Real, P: Place<T>, S: Shelf<T>> Shelf<T> for (Option<P>, S) {
 
 /// Defines the type that implements [`Shelf`] for the effects of one stage, in their order.
 macro_rules! shelf {
-    ($T:ident $Place:ident:) => { () };
-    ($T:ident $Place:ident: $module:ident::$Type:ident $(, $more:ident::$More:ident)*) => {
+    ($T:ident:) => { () };
+    ($T:ident: $module:ident::$Type:ident $(, $more:ident::$More:ident)*) => {
         (
-            Option<$crate::effect::$Place<$crate::effect::$module::$Type<$T>>>,
-            $crate::effect::registry::shelf!($T $Place: $($more::$More),*),
+            Option<$crate::effect::$module::$Type<$T>>,
+            $crate::effect::registry::shelf!($T: $($more::$More),*),
         )
     };
 }
 
 macro_rules! signal_chain {
-    ($($stage:ident: $Place:ident [$($module:ident::$Type:ident),* $(,)?],)*) => {
+    ($($field:ident: $Stage:ident [$($module:ident::$Type:ident),* $(,)?],)*) => {
         /// Types of the effects of each stage; each type has the name of its stage.
         #[allow(non_camel_case_types)]
         mod line {
-            $(pub(crate) type $stage<T> = $crate::effect::registry::shelf!(T $Place: $($module::$Type),*);)*
+            $(pub(crate) type $field<T> = $crate::effect::registry::shelf!(T: $($module::$Type),*);)*
         }
 
         /// Effects selected from the catalogue by name at run time.
         ///
-        /// The type reserves memory for every effect. A [typed set](super::set) reserves memory
-        /// only for its members.
+        /// The type reserves memory for every effect. A [typed set](Effect) reserves memory only
+        /// for its members.
         #[derive(Clone, Copy, Debug)]
         pub struct Effects<T: Real> {
-            $($stage: line::$stage<T>,)*
+            $($field: line::$field<T>,)*
         }
 
         /// States of the selected effects.
         #[derive(Clone, Copy, Debug)]
         pub struct States<T: Real> {
-            $($stage: <line::$stage<T> as EffectSet<T>>::State,)*
+            $($field: <line::$field<T> as Effect<T>>::State,)*
         }
 
         /// Stages of the signal chain at which an effect is selected.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct OccupiedStages {
             $(
-                #[doc = concat!("True where the stage `", stringify!($stage), "` has an effect.")]
-                pub $stage: bool,
+                #[doc = concat!("True where the stage `", stringify!($field), "` has an effect.")]
+                pub $field: bool,
             )*
         }
 
         /// Descriptions of all effects, in the order of the signal chain.
         pub const CATALOGUE: &[Info] = &[
-            $($(<$Place<$module::$Type<f64>> as Place<f64>>::INFO,)*)*
+            $($({
+                const INFO: Info = <$module::$Type<f64> as Named<f64>>::INFO;
+                assert!(
+                    matches!(INFO.stage, Stage::$Stage),
+                    "the description of an effect has another stage than the catalogue"
+                );
+                INFO
+            },)*)*
         ];
-
-        /// Returns true if a parameter of the effect changes the instants at which friction jumps;
-        /// see [`Effect::MOVES_JUMPS`].
-        pub fn moves_jumps(name: &str) -> bool {
-            match name {
-                $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::MOVES_JUMPS,)*)*
-                _ => false,
-            }
-        }
-
-        /// Returns true if the predicted force depends on a jump for longer than the step of the
-        /// jump; see [`Effect::SPREADS_JUMPS`].
-        pub fn spreads_jumps(name: &str) -> bool {
-            match name {
-                $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::SPREADS_JUMPS,)*)*
-                _ => false,
-            }
-        }
-
-        /// Returns the parameter of the effect along which the likelihood may have several maxima;
-        /// see [`Effect::PEAKS`].
-        pub fn peaks(name: &str) -> Option<&'static str> {
-            match name {
-                $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::PEAKS,)*)*
-                _ => None,
-            }
-        }
-
-        /// Returns the Rust types of the effect `name`: `PLACE` and `TYPE` in `effect::PLACE` and
-        /// `effect::NAME::TYPE`.
-        pub fn type_names(name: &str) -> Option<(&'static str, &'static str)> {
-            match name {
-                $($(stringify!($module) => Some((stringify!($Place), stringify!($Type))),)*)*
-                _ => None,
-            }
-        }
 
         impl<T: Real> Effects<T> {
             /// No effect: the base law.
-            pub const NONE: Self = Self { $($stage: Shelf::EMPTY,)* };
+            pub const NONE: Self = Self { $($field: Shelf::EMPTY,)* };
 
             /// Returns the stages at which an effect is selected.
             pub fn occupied_stages(&self) -> OccupiedStages {
-                OccupiedStages { $($stage: !self.$stage.is_empty(),)* }
+                OccupiedStages { $($field: !self.$field.is_empty(),)* }
             }
 
             /// Adds or replaces the effect `name`.
@@ -159,13 +143,39 @@ macro_rules! signal_chain {
             /// # Errors
             /// Reports the parameter that violates its rule, or an unknown name.
             pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), ParameterError> {
-                $(if let Some(done) = self.$stage.set(name, parameters) {
+                $(if let Some(done) = self.$field.set(name, parameters) {
                     return done;
                 })*
                 Err(ParameterError::UnknownEffect)
             }
         }
+
+        /// Effects of the catalogue as one set; each method calls only the effects of its stages.
+        impl<T: Real> Effect<T> for Effects<T> {
+            type State = States<T>;
+
+            fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> States<T> {
+                States { $($field: self.$field.start(motion, rig),)* }
+            }
+            #[inline]
+            fn longest_step_s(&self) -> f64 {
+                f64::INFINITY $(.min(self.$field.longest_step_s()))*
+            }
+            #[inline]
+            fn has_memory(&self) -> bool {
+                false $(|| self.$field.has_memory())*
+            }
+            #[inline(always)]
+            fn has_drive(&self) -> bool {
+                self.drive.has_drive()
+            }
+            #[inline]
+            fn fastest_film(&self) -> f64 {
+                self.film.fastest_film()
+            }
+            forward_stages!(stages);
+        }
     };
 }
 
-pub(crate) use {shelf, signal_chain};
+pub(crate) use {named_effect, shelf, signal_chain};

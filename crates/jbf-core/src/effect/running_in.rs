@@ -2,10 +2,11 @@
 //!
 //! Source: Cohn (1998), section 4.2 (the worn clearance); running-in after Blau (1989).
 
-use super::{Contact, Effect, Info, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Asperity friction that changes with the sliding distance.
@@ -15,58 +16,48 @@ pub struct RunningIn<T> {
     inverse_distance_1_m: T,
 }
 
-impl<T: Real> Effect<T> for RunningIn<T> {
-    const INFO: Info = Info::new("running_in", Stage::Contact)
+described! {
+    named_effect RunningIn = Info::new::<T, Self>("running_in", Stage::Contact)
         .summary("running-in of asperities: contact friction falls with the sliding distance")
         .equation("f_m -> f_m (1 + a exp(-s/s_0)), s the distance slid in the run")
         .source("Blau 1989; Cohn 1998, section 4.2")
         .limits(
             "each run starts with a fresh surface; wear that persists between runs is \
                  not included",
-        )
-        .parameters(&[
-            Parameter::new(
-                "a",
-                "-",
-                "relative excess of the fresh surface",
-                [-0.95, 10.0],
-                &[0.2],
-            )
-            .null(0.0),
-            Parameter::new(
-                "s_0",
-                "m",
-                "sliding distance in which the excess decays to 1/e",
-                [1e-3, 1e5],
-                &[1.0, 5.0],
-            )
-            .log(),
-        ]);
+        );
+    a = "a", "-", "relative excess of the fresh surface", [-0.95, 10.0], [0.2] null(0.0);
+    s_0 = "s_0", "m", "sliding distance in which the excess decays to 1/e",
+        [1e-3, 1e5], [1.0, 5.0] .log();
+}
+
+impl<T: Real> RunningIn<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            excess: p.a,
+            inverse_distance_1_m: T::ONE / p.s_0,
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for RunningIn<T> {
     /// Sliding distance since the start of the run, m.
     type State = T;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            excess: parameters[0],
-            inverse_distance_1_m: T::ONE / parameters[1],
-        })
-    }
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
         T::ZERO
     }
-}
 
-impl<T: Real> Contact<T> for RunningIn<T> {
     #[inline(always)]
-    fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        state: &mut T,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
+        *state += from.distance_m(to, dt_s);
         let fresh = (-(*state * self.inverse_distance_1_m)).exp();
         sliding.jump *= T::ONE + self.excess * fresh;
-    }
-
-    #[inline(always)]
-    fn step(&self, state: &mut T, from: &JournalMotion<T>, to: &JournalMotion<T>, dt_s: T) {
-        *state += from.distance_m(to, dt_s);
     }
 }

@@ -2,9 +2,10 @@
 //!
 //! Source: charge amplifiers of piezo-electric load cells (Gautschi 2002).
 
-use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Signal, Stage};
 use crate::motion::Motion;
+use crate::page::described;
 use crate::real::Real;
 
 /// Drift of the zero of a load cell at a constant rate.
@@ -13,46 +14,33 @@ pub struct SensorDrift<T> {
     slope_n_s: T,
 }
 
-impl<T: Real> Effect<T> for SensorDrift<T> {
-    const INFO: Info = Info::new("sensor_drift", Stage::Instrument)
+described! {
+    named_effect SensorDrift = Info::new::<T, Self>("sensor_drift", Stage::Instrument)
         .summary("zero of the load cell drifts linearly during a run")
         .equation("r -> r + d t, t since the start of the run")
         .source("Gautschi 2002 (charge leak of piezo cells)")
         .limits(
             "linear, from zero in each run; the leakage of a piezo cell saturates after \
                  its time constant",
-        )
-        .parameters(&[Parameter::new(
-            "d",
-            "N/s",
-            "change of the reading per second",
-            [-1e4, 1e4],
-            &[0.005],
-        )
-        .null(0.0)
-        .signed()]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            slope_n_s: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+        );
+    d = "d", "N/s", "change of the reading per second", [-1e4, 1e4], [0.005] null(0.0) .signed();
 }
 
-impl<T: Real> Instrument<T> for SensorDrift<T> {
-    fn first(&self, _state: &mut (), force_n: T) -> T {
-        force_n
+impl<T: Real> SensorDrift<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { slope_n_s: p.d }
     }
+}
+
+impl<T: Real> Effect<T> for SensorDrift<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
 
     #[inline(always)]
-    fn step(&self, _state: &mut (), signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
-        let before = signal.begin_n + self.slope_n_s * (time_s - dt_s);
-        let mut after = signal.shifted(self.slope_n_s * time_s);
-        after.begin_n = before;
-        after
+    fn reading(&self, _state: &mut (), signal: &mut Signal<T>, time_s: T, dt_s: T) {
+        let begin_n = signal.begin_n + self.slope_n_s * (time_s - dt_s);
+        *signal = signal.shifted(self.slope_n_s * time_s);
+        signal.begin_n = begin_n;
     }
 }

@@ -19,10 +19,10 @@
 //! derivative with respect to w is that of the present branch: -1 if the force last rose, +1 if it
 //! fell, 0 before the first change. A score test at w = 0 can therefore detect the effect.
 
-use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Signal, Stage};
 use crate::motion::Motion;
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Hysteresis of a load cell, from play or friction in the force path.
@@ -68,8 +68,8 @@ impl<T: Real> SensorHysteresis<T> {
     }
 }
 
-impl<T: Real> Effect<T> for SensorHysteresis<T> {
-    const INFO: Info = Info::new("sensor_hysteresis", Stage::Instrument)
+described! {
+    named_effect SensorHysteresis = Info::new::<T, Self>("sensor_hysteresis", Stage::Instrument)
         .summary(
             "load cell reads less while the force rises than while it falls: play or \
              friction in the force path",
@@ -80,24 +80,19 @@ impl<T: Real> Effect<T> for SensorHysteresis<T> {
             "constant gap; loops that widen gradually or with the force are not included; \
              each run starts at mid-gap (samples that depend on this are excluded from a fit)",
         )
-        .unknown_start()
-        .parameters(&[Parameter::new(
-            "w",
-            "N",
-            "half of the distance between the branches",
-            [0.0, 1e5],
-            &[0.5],
-        )
-        .null(0.0)
-        .start(Start::CellPlay)]);
-    type State = State<T>;
+        .unknown_start();
+    w = "w", "N", "half of the distance between the branches",
+        [0.0, 1e5], [0.5] null(0.0) .start(Start::CellPlay);
+}
 
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            half_width_n: parameters[0],
-        })
+impl<T: Real> SensorHysteresis<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { half_width_n: p.w }
     }
+}
+
+impl<T: Real> Effect<T> for SensorHysteresis<T> {
+    type State = State<T>;
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
         State {
@@ -105,24 +100,21 @@ impl<T: Real> Effect<T> for SensorHysteresis<T> {
             branch: 0,
         }
     }
-}
 
-impl<T: Real> Instrument<T> for SensorHysteresis<T> {
-    fn first(&self, state: &mut State<T>, force_n: T) -> T {
-        state.held_n = force_n;
-        force_n
+    fn first_reading(&self, state: &mut State<T>, force_n: &mut T) {
+        state.held_n = *force_n;
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut State<T>, signal: Signal<T>, _time_s: T, _dt_s: T) -> Signal<T> {
+    fn reading(&self, state: &mut State<T>, signal: &mut Signal<T>, _time_s: T, _dt_s: T) {
         let begin = self.under(*state, signal.begin_n);
         *state = self.under(begin, signal.end_n);
         // The force at the exact instant of a jump has no duration and moves nothing.
         let now = self.under(*state, signal.now_n);
-        Signal {
+        *signal = Signal {
             begin_n: self.reading_n(begin, signal.begin_n),
             end_n: self.reading_n(*state, signal.end_n),
             now_n: self.reading_n(now, signal.now_n),
-        }
+        };
     }
 }

@@ -2,10 +2,10 @@
 //!
 //! Source: Cohn (1998), section 4.1 (the load cell's signal is low-passed).
 
-use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Signal, Stage};
 use crate::motion::Motion;
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 use crate::relaxation::relax;
 
@@ -15,43 +15,39 @@ pub struct SensorLag<T> {
     tau_s: T,
 }
 
-impl<T: Real> Effect<T> for SensorLag<T> {
-    const INFO: Info = Info::new("sensor_lag", Stage::Instrument)
+described! {
+    named_effect SensorLag = Info::new::<T, Self>("sensor_lag", Stage::Instrument)
         .summary("load cell or its filter follows the force with a time lag")
         .equation("tau r' = F - r")
         .source("Cohn 1998, section 4.1")
         .limits(
             "first order; a steep filter delays more than it smooths; a pure delay is time_delay",
         )
-        .parameters(&[
-            Parameter::new("tau_s", "s", "time constant", [0.0, 1e2], &[0.05, 0.3])
-                .null(0.0)
-                .start(Start::Lateness),
-        ]);
-    const SPREADS_JUMPS: bool = true;
+        .spreads_jumps();
+    tau_s = "tau_s", "s", "time constant",
+        [0.0, 1e2], [0.05, 0.3] null(0.0) .start(Start::Lateness);
+}
+
+impl<T: Real> SensorLag<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { tau_s: p.tau_s }
+    }
+}
+
+impl<T: Real> Effect<T> for SensorLag<T> {
     /// Reading of the load cell, N.
     type State = T;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            tau_s: parameters[0],
-        })
-    }
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
         T::ZERO
     }
-}
 
-impl<T: Real> Instrument<T> for SensorLag<T> {
-    fn first(&self, state: &mut T, force_n: T) -> T {
-        *state = force_n;
-        force_n
+    fn first_reading(&self, state: &mut T, force_n: &mut T) {
+        *state = *force_n;
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut T, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
+    fn reading(&self, state: &mut T, signal: &mut Signal<T>, _time_s: T, dt_s: T) {
         let begin_n = *state;
         // Below the resolution of a step the lag takes its limit: no lag, or a shift by tau.
         let ratio = dt_s / self.tau_s;
@@ -62,10 +58,10 @@ impl<T: Real> Instrument<T> for SensorLag<T> {
         } else {
             relax(begin_n, [signal.begin_n, signal.end_n], ratio)
         };
-        Signal {
+        *signal = Signal {
             begin_n,
             end_n: *state,
             now_n: *state,
-        }
+        };
     }
 }

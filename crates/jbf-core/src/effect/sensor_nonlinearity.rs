@@ -11,10 +11,10 @@
 //! The reading never decreases with the force. For negative c, the characteristic is constant
 //! beyond its maximum at `1/sqrt(-3 c)`, far outside the range in which the equation is valid.
 
-use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Signal, Stage};
 use crate::motion::Motion;
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Largest relative error of a reading, a limit that keeps the reading finite.
@@ -39,47 +39,40 @@ impl<T: Real> SensorNonlinearity<T> {
     }
 }
 
-impl<T: Real> Effect<T> for SensorNonlinearity<T> {
-    const INFO: Info = Info::new("sensor_nonlinearity", Stage::Instrument)
+described! {
+    named_effect SensorNonlinearity = Info::new::<T, Self>("sensor_nonlinearity", Stage::Instrument)
         .summary("nonlinear load cell: it reads large forces too large or too small")
         .equation("r = F + c F^3")
         .source("VDI/VDE 2638 (linearity error); ISO 376 (interpolation by a cubic)")
         .limits(
             "odd: equal in tension and compression; constant beyond 1/sqrt(-3c) for negative \
              c; a gain error belongs to the law",
-        )
-        .parameters(&[Parameter::new(
-            "c",
-            "1/N^2",
-            "error of the reading per cube of the force",
-            [-1e6, 1e6],
-            &[1e-4],
-        )
-        .null(0.0)
-        .start(Start::CellCubic)]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            cubic_1_n2: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+        );
+    c = "c", "1/N^2", "error of the reading per cube of the force",
+        [-1e6, 1e6], [1e-4] null(0.0) .start(Start::CellCubic);
 }
 
-impl<T: Real> Instrument<T> for SensorNonlinearity<T> {
-    fn first(&self, _state: &mut (), force_n: T) -> T {
-        self.reading_n(force_n)
+impl<T: Real> SensorNonlinearity<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { cubic_1_n2: p.c }
+    }
+}
+
+impl<T: Real> Effect<T> for SensorNonlinearity<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
+    fn first_reading(&self, _state: &mut (), force_n: &mut T) {
+        *force_n = self.reading_n(*force_n);
     }
 
     #[inline(always)]
-    fn step(&self, _state: &mut (), signal: Signal<T>, _time_s: T, _dt_s: T) -> Signal<T> {
-        Signal {
+    fn reading(&self, _state: &mut (), signal: &mut Signal<T>, _time_s: T, _dt_s: T) {
+        *signal = Signal {
             begin_n: self.reading_n(signal.begin_n),
             end_n: self.reading_n(signal.end_n),
             now_n: self.reading_n(signal.now_n),
-        }
+        };
     }
 }

@@ -1,13 +1,183 @@
-//! Stages of the signal chain, with one or more traits each.
-//!
-//! An effect implements [`Effect`] and the trait of its stage. An effect does not depend on the
-//! other stages.
+//! Trait of effects, and the signals between the stages of the signal chain.
 
-use super::{Effect, Rig};
+use super::Rig;
 use crate::friction::Friction;
 use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
+use core::fmt::Debug;
+
+/// Effect in a signal chain, or a set of effects.
+///
+/// Each method is a part of one stage of the signal chain. The default of each method leaves the
+/// signals unchanged, so an effect has only the methods of its stage. Quantities that several
+/// effects change in turn are mutable arguments.
+///
+/// Sets are composed of effects: `()` has no effect, `(A, B)` has the effects of `A` and then those
+/// of `B` at every stage, `Option<A>` those of `A` or none, and [`Effects`](super::Effects) those
+/// selected from the catalogue by name at run time. A set reserves memory for its own effects only.
+pub trait Effect<T: Real>: Copy + Debug {
+    /// Longest step with which the effect is sufficiently accurate, s.
+    const LONGEST_STEP_S: f64 = 0.02;
+
+    /// State of the effect in the course of a run; `()` for an effect without memory.
+    type State: Copy + Debug;
+
+    /// Returns the state at the start of a run that begins with `motion`.
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
+
+    /// Returns the longest step that every effect of a set allows, s.
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        Self::LONGEST_STEP_S
+    }
+
+    /// Returns true if an effect depends on the past.
+    ///
+    /// Otherwise the steps between two samples have no influence on the second sample.
+    #[inline]
+    fn has_memory(&self) -> bool {
+        core::mem::size_of::<Self::State>() > 0
+    }
+
+    /// Returns true if the motion of the journal may differ from the commanded motion.
+    #[inline(always)]
+    fn has_drive(&self) -> bool {
+        false
+    }
+
+    /// Stage drive: computes the motion of the journal at the end of the step from the commanded
+    /// one.
+    #[inline(always)]
+    fn drive(
+        &self,
+        state: &mut Self::State,
+        rig: &Rig<T>,
+        journal: &mut JournalMotion<T>,
+        dt_s: T,
+    ) {
+        let _ = (state, rig, journal, dt_s);
+    }
+
+    /// Stage drive: stores the resistance of the journal at the end of a step of `dt_s`, which is
+    /// zero at the start of a run.
+    #[inline(always)]
+    fn resist(&self, state: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
+        let _ = (state, resistance, dt_s);
+    }
+
+    /// Stage drive: sets the force that a compliant drive transmits to the commanded side, N per
+    /// bearing; it remains `None` for a rigid drive.
+    #[inline(always)]
+    fn transmitted_n(
+        &self,
+        state: &Self::State,
+        motion: &Motion<T>,
+        rig: &Rig<T>,
+        force_n: &mut Option<T>,
+    ) {
+        let _ = (state, motion, rig, force_n);
+    }
+
+    /// Stage lubricant: multiplies `factor`, which scales the speed in the film equations.
+    #[inline(always)]
+    fn lubricant(&self, state: &Self::State, journal: &JournalMotion<T>, factor: &mut T) {
+        let _ = (state, journal, factor);
+    }
+
+    /// Stage lubricant: advances the temperature with the friction power (W) at the end of the
+    /// step.
+    #[inline(always)]
+    fn heat(&self, state: &mut Self::State, power_w: T, dt_s: T) {
+        let _ = (state, power_w, dt_s);
+    }
+
+    /// Stage film: sets the factors on the parameters of the law for a load of `share` times the
+    /// nominal load of the rig.
+    ///
+    /// `scales` remains `None` if no effect depends on the load.
+    #[inline(always)]
+    fn scales(&self, state: &mut Self::State, scales: &mut Option<Scales<T>>, share: T) {
+        let _ = (state, scales, share);
+    }
+
+    /// Stages lubricant and film: multiplies `rate`, which scales the rate of the film dynamics.
+    #[inline(always)]
+    fn film_rate(&self, state: &Self::State, journal: &JournalMotion<T>, rate: &mut T) {
+        let _ = (state, journal, rate);
+    }
+
+    /// Stage film: returns the largest factor on the rate of the film dynamics, at least one.
+    #[inline]
+    fn fastest_film(&self) -> f64 {
+        1.0
+    }
+
+    /// Stage contact: advances the effects by `dt_s` and changes the sliding friction, a
+    /// coefficient.
+    #[inline(always)]
+    fn contact(
+        &self,
+        state: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
+        let _ = (state, from, to, sliding, dt_s);
+    }
+
+    /// Stage contact: changes the sliding friction, a coefficient, according to the force (N) that
+    /// the transmission carries.
+    #[inline(always)]
+    fn transmission(&self, state: &Self::State, sliding: &mut Friction<T>, transmitted_n: T) {
+        let _ = (state, sliding, transmitted_n);
+    }
+
+    /// Stage contact: replaces the jump of friction at a reversal by the deflection of a bristle,
+    /// after all other effects on the contact.
+    ///
+    /// Sets `deflected` to the signed friction coefficient; it remains `None` without a bristle.
+    /// `magnitude` contains the sliding coefficients at the start and at the end of the step. A step
+    /// of zero length is the start of a run.
+    #[inline(always)]
+    fn bristle(
+        &self,
+        state: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        deflected: &mut Option<T>,
+        magnitude: [T; 2],
+        dt_s: T,
+    ) {
+        let _ = (state, from, to, deflected, magnitude, dt_s);
+    }
+
+    /// Stage other: adds friction to `sum_n`, N, and the force that the transmission carries to
+    /// `transmitted_n`, N.
+    #[inline(always)]
+    fn add_friction(
+        &self,
+        state: &Self::State,
+        journal: &JournalMotion<T>,
+        sum_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        let _ = (state, journal, sum_n, transmitted_n);
+    }
+
+    /// Stage instrument: changes the force at the start of a run to the first reading, N.
+    #[inline(always)]
+    fn first_reading(&self, state: &mut Self::State, force_n: &mut T) {
+        let _ = (state, force_n);
+    }
+
+    /// Stage instrument: changes the signal of a step of `dt_s` that ends at `time_s`.
+    #[inline(always)]
+    fn reading(&self, state: &mut Self::State, signal: &mut Signal<T>, time_s: T, dt_s: T) {
+        let _ = (state, signal, time_s, dt_s);
+    }
+}
 
 /// Resistance of the journal to the drive: `level sgn(v) + slope v`, N per bearing.
 ///
@@ -19,116 +189,6 @@ pub struct Resistance<T> {
     pub level_n: T,
     /// Slope of the force that is proportional to the speed, N s/m.
     pub slope_n_s_m: T,
-}
-
-/// Effect on the motion between the encoder and the journal.
-pub trait Drive<T: Real>: Effect<T> {
-    /// Advances the effect by `dt_s` to the motion `to` of its input, and returns the motion of its
-    /// output.
-    fn step(
-        &self,
-        state: &mut Self::State,
-        to: &JournalMotion<T>,
-        rig: &Rig<T>,
-        dt_s: T,
-    ) -> JournalMotion<T>;
-    /// Stores the resistance of the journal at the end of a step of `dt_s`, which is zero at the
-    /// start of a run.
-    #[inline(always)]
-    fn resist(&self, state: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
-        let _ = (state, resistance, dt_s);
-    }
-    /// Returns the force on the commanded side, N per bearing; `None` if it equals the friction of
-    /// the journal.
-    #[inline(always)]
-    fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
-        let _ = (state, motion, rig);
-        None
-    }
-}
-
-/// Effect on the viscosity of the film, which is equivalent to a factor on the speed.
-pub trait Lubricant<T: Real>: Effect<T> {
-    /// Returns the factor on the dimensionless speed `Ub`.
-    fn factor(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
-    /// Returns the factor on the rate of the film dynamics; the default is one.
-    #[inline(always)]
-    fn rate(&self, state: &Self::State, journal: &JournalMotion<T>) -> T {
-        let _ = (state, journal);
-        T::ONE
-    }
-    /// Advances the effect by `dt_s`; the friction power at the end of the step is `power_w`, W.
-    #[inline(always)]
-    fn step(&self, state: &mut Self::State, power_w: T, dt_s: T) {
-        let _ = (state, power_w, dt_s);
-    }
-}
-
-/// Effect of the load on the parameters of the law.
-pub trait Loading<T: Real>: Effect<T> {
-    /// Returns the factors on the parameters of the law for a load of `share` times the nominal
-    /// load of the rig.
-    ///
-    /// All factors are one if `share` is one.
-    fn scales(&self, state: &mut Self::State, share: T) -> Scales<T>;
-}
-
-/// Effect on the rate of the film dynamics.
-pub trait Film<T: Real>: Effect<T> {
-    /// Returns the factor on the rate of the film dynamics.
-    fn rate(&self, state: &Self::State) -> T;
-    /// Returns the largest factor on the rate of the film dynamics, at least one.
-    fn fastest(&self) -> f64;
-}
-
-/// Effect on the sliding friction between the surfaces.
-pub trait Contact<T: Real>: Effect<T> {
-    /// Changes the sliding friction, a coefficient, at the end of a step.
-    fn apply(&self, state: &Self::State, journal: &JournalMotion<T>, sliding: &mut Friction<T>);
-    /// Advances the effect by `dt_s`, before `apply` is called.
-    #[inline(always)]
-    fn step(
-        &self,
-        state: &mut Self::State,
-        from: &JournalMotion<T>,
-        to: &JournalMotion<T>,
-        dt_s: T,
-    ) {
-        let _ = (state, from, to, dt_s);
-    }
-}
-
-/// Friction of the transmission (gears, a screw) that depends on the force it carries.
-pub trait Transmission<T: Real>: Effect<T> {
-    /// Changes the sliding friction, a coefficient, according to the transmitted force, N.
-    ///
-    /// The force is positive if the drive must push in the positive direction.
-    fn apply(&self, state: &Self::State, transmitted_n: T, sliding: &mut Friction<T>);
-}
-
-/// Effect that replaces the jump of friction at a reversal by a deflection, after all other effects
-/// on the contact.
-pub trait Bristle<T: Real>: Effect<T> {
-    /// Returns the signed friction coefficient at the start of a run, fully deflected if the run
-    /// starts in motion.
-    fn first(&self, state: &mut Self::State, journal: &JournalMotion<T>, magnitude: T) -> T;
-    /// Advances the bristle by `dt_s` and returns the signed friction coefficient.
-    ///
-    /// `magnitude` contains the sliding coefficients at the start and at the end of the step.
-    fn step(
-        &self,
-        state: &mut Self::State,
-        from: &JournalMotion<T>,
-        to: &JournalMotion<T>,
-        magnitude: [T; 2],
-        dt_s: T,
-    ) -> T;
-}
-
-/// Friction in addition to that of the bearing.
-pub trait OtherFriction<T: Real>: Effect<T> {
-    /// Returns the friction force, N.
-    fn friction_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> Friction<T>;
 }
 
 /// Force in the course of a step, the input and output of an instrument.
@@ -156,19 +216,4 @@ impl<T: Real> Signal<T> {
             now_n: self.now_n + by_n,
         }
     }
-}
-
-/// Effect of the instrument, between the force and its record.
-pub trait Instrument<T: Real>: Effect<T> {
-    /// Returns the constant force in the readings, N, which the transmission of a drive may carry;
-    /// the default is zero.
-    #[inline(always)]
-    fn constant_n(&self) -> T {
-        T::ZERO
-    }
-
-    /// Returns the first reading of a run that begins with the force `force_n`, N.
-    fn first(&self, state: &mut Self::State, force_n: T) -> T;
-    /// Returns the output of the instrument for a step of `dt_s` that ends at `time_s`.
-    fn step(&self, state: &mut Self::State, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T>;
 }

@@ -16,11 +16,11 @@
 //! Source: Armstrong-Helouvry (1991), chapter 3, whose arm has a position-dependent friction in
 //! each joint; Popovic & Goldenberg (1998), who model it by its Fourier series.
 
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 use core::f64::consts::FRAC_PI_2;
 
@@ -32,13 +32,8 @@ pub struct StrokeDependence<T> {
     inverse_half_1_m: T,
 }
 
-/// Description of the amplitude of one wave.
-const fn wave(name: &'static str, meaning: &'static str) -> Parameter {
-    Parameter::new(name, "-", meaning, [-2.0, 2.0], &[0.1]).null(0.0)
-}
-
-impl<T: Real> Effect<T> for StrokeDependence<T> {
-    const INFO: Info = Info::new("stroke_dependence", Stage::Contact)
+described! {
+    named_effect StrokeDependence = Info::new::<T, Self>("stroke_dependence", Stage::Contact)
         .summary("dry friction that varies smoothly along the stroke")
         .equation(
             "F_dry -> F_dry (1 + sum of a_k w_k(u)), w_k = sin(k pi u/2) for k odd, cos(k pi u/2) for \
@@ -49,50 +44,45 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
             "variations over less than a fifth of the stroke are smoothed; constant beyond \
              the ends; the position must be absolute or have the same zero in every run",
         )
-        .parameters(&[
-            wave("a_1", "half a wave: upper end higher than lower end").signed(),
-            wave("a_2", "one wave: middle higher than both ends"),
-            wave("a_3", "one and a half waves").signed(),
-            wave("a_4", "two waves: middle and ends higher than the quarters"),
-            wave("a_5", "two and a half waves").signed(),
-            wave("a_6", "three waves"),
-            Parameter::new("x_0", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
-                .signed()
-                .start(Start::StrokeMiddle)
-                .stated(),
-            Parameter::new("h", "m", "half of the stroke", [1e-9, 1e6], &[0.4])
-                .log()
-                .start(Start::StrokeHalf)
-                .stated(),
-        ])
         .needs(&[Need::NoFilm, Need::Position]);
+    a_1 = "a_1", "-", "half a wave: upper end higher than lower end", [-2.0, 2.0], [0.1] null(0.0) .signed();
+    a_2 = "a_2", "-", "one wave: middle higher than both ends", [-2.0, 2.0], [0.1] null(0.0);
+    a_3 = "a_3", "-", "one and a half waves", [-2.0, 2.0], [0.1] null(0.0) .signed();
+    a_4 = "a_4", "-", "two waves: middle and ends higher than the quarters", [-2.0, 2.0], [0.1] null(0.0);
+    a_5 = "a_5", "-", "two and a half waves", [-2.0, 2.0], [0.1] null(0.0) .signed();
+    a_6 = "a_6", "-", "three waves", [-2.0, 2.0], [0.1] null(0.0);
+    x_0 = "x_0", "m", "middle of the stroke",
+        [-1e6, 1e6], [0.1] .signed().start(Start::StrokeMiddle).stated();
+    h = "h", "m", "half of the stroke", [1e-9, 1e6], [0.4] .log().start(Start::StrokeHalf).stated();
+}
+
+impl<T: Real> StrokeDependence<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            sizes: [p.a_1, p.a_2, p.a_3, p.a_4, p.a_5, p.a_6],
+            middle_m: p.x_0,
+            inverse_half_1_m: T::ONE / p.h,
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for StrokeDependence<T> {
     /// Radius that converts an angle to a position, m.
     type State = T;
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            sizes: [
-                parameters[0],
-                parameters[1],
-                parameters[2],
-                parameters[3],
-                parameters[4],
-                parameters[5],
-            ],
-            middle_m: parameters[6],
-            inverse_half_1_m: T::ONE / parameters[7],
-        })
-    }
 
     fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
         rig.radius_m
     }
-}
 
-impl<T: Real> Contact<T> for StrokeDependence<T> {
     #[inline(always)]
-    fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        radius_m: &mut T,
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         let u = (journal.angle_rad * *radius_m - self.middle_m) * self.inverse_half_1_m;
         let u = u.max(-T::ONE).min(T::ONE);
         // cos 2q to cos 6q from one sine.

@@ -6,9 +6,10 @@
 //! so Fb and eps_tr stay constant. A friction record determines only the product beta q, so the
 //! state is `beta T` and the product is the parameter.
 
-use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 use crate::relaxation::relax;
 
@@ -28,40 +29,29 @@ pub struct State<T> {
     power_w: T,
 }
 
-impl<T: Real> Effect<T> for ThermalThinning<T> {
-    const INFO: Info = Info::new("thermal_thinning", Stage::Lubricant)
+described! {
+    named_effect ThermalThinning = Info::new::<T, Self>("thermal_thinning", Stage::Lubricant)
         .summary("frictional heating of the oil, which lowers its viscosity")
         .equation("Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau")
         .source("Reynolds's viscosity law; Cohn 1998, section 4.2")
         .limits("one lumped temperature, exponential viscosity, cold at the start of each run")
-        .parameters(&[
-            Parameter::new(
-                "beta_q_1_j",
-                "1/J",
-                "decrease of log viscosity per joule of friction work",
-                [0.0, 1e3],
-                &[0.03, 0.3],
-            )
-            .null(0.0),
-            Parameter::new(
-                "tau_s",
-                "s",
-                "thermal time constant of the film",
-                [0.1, 1e5],
-                &[60.0],
-            )
-            .log(),
-        ])
         .needs(&[Need::Film]);
-    type State = State<T>;
+    beta_q_1_j = "beta_q_1_j", "1/J", "decrease of log viscosity per joule of friction work",
+        [0.0, 1e3], [0.03, 0.3] null(0.0);
+    tau_s = "tau_s", "s", "thermal time constant of the film", [0.1, 1e5], [60.0] .log();
+}
 
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            rate_1_j: parameters[0],
-            tau_s: parameters[1],
-        })
+impl<T: Real> ThermalThinning<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            rate_1_j: p.beta_q_1_j,
+            tau_s: p.tau_s,
+        }
     }
+}
+
+impl<T: Real> Effect<T> for ThermalThinning<T> {
+    type State = State<T>;
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
         State {
@@ -69,16 +59,14 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
             power_w: T::ZERO,
         }
     }
-}
 
-impl<T: Real> Lubricant<T> for ThermalThinning<T> {
     #[inline(always)]
-    fn factor(&self, state: &State<T>, _journal: &JournalMotion<T>) -> T {
-        (-state.thinned).exp()
+    fn lubricant(&self, state: &State<T>, _journal: &JournalMotion<T>, factor: &mut T) {
+        *factor *= (-state.thinned).exp();
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut State<T>, power_w: T, dt_s: T) {
+    fn heat(&self, state: &mut State<T>, power_w: T, dt_s: T) {
         let gain = self.rate_1_j * self.tau_s;
         let heat = [state.power_w * gain, power_w * gain];
         state.thinned = relax(state.thinned, heat, dt_s / self.tau_s);

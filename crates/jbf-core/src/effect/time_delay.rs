@@ -8,11 +8,11 @@
 //! sample, therefore has a derivative. A jump of the force becomes a ramp of one step in the
 //! reading.
 
-use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
+use super::registry::named_effect;
+use super::{Effect, Info, Rig, Signal, Stage};
 use crate::delay_line::DelayLine;
-use crate::error::ParameterError;
 use crate::motion::Motion;
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Time delay of the recorded force relative to the recorded motion.
@@ -28,8 +28,8 @@ pub struct State<T> {
     reading_n: T,
 }
 
-impl<T: Real> Effect<T> for TimeDelay<T> {
-    const INFO: Info = Info::new("time_delay", Stage::Instrument)
+described! {
+    named_effect TimeDelay = Info::new::<T, Self>("time_delay", Stage::Instrument)
         .summary("delay of the friction record relative to the motion record")
         .equation("r(t) = F(t - tau)")
         .source("Hess & Soom 1990; channel skew of any two-instrument record")
@@ -37,24 +37,19 @@ impl<T: Real> Effect<T> for TimeDelay<T> {
             "one delay for all frequencies and all runs; a filter is sensor_lag; clock drift \
              is not included",
         )
-        .parameters(&[Parameter::new(
-            "tau_s",
-            "s",
-            "delay of the friction record",
-            [0.0, 2.0],
-            &[0.025, 0.085, 0.235],
-        )
-        .null(0.0)
-        .start(Start::Lateness)]);
-    const MOVES_JUMPS: bool = true;
-    type State = State<T>;
+        .moves_jumps();
+    tau_s = "tau_s", "s", "delay of the friction record",
+        [0.0, 2.0], [0.025, 0.085, 0.235] null(0.0) .start(Start::Lateness);
+}
 
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            tau_s: parameters[0],
-        })
+impl<T: Real> TimeDelay<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { tau_s: p.tau_s }
     }
+}
+
+impl<T: Real> Effect<T> for TimeDelay<T> {
+    type State = State<T>;
 
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
         State {
@@ -62,30 +57,27 @@ impl<T: Real> Effect<T> for TimeDelay<T> {
             reading_n: T::ZERO,
         }
     }
-}
 
-impl<T: Real> Instrument<T> for TimeDelay<T> {
-    /// Returns the first reading of a run; the force before the run is assumed to equal that at its
-    /// start.
-    fn first(&self, state: &mut State<T>, force_n: T) -> T {
-        state.line.push(force_n, T::ZERO, self.tau_s);
-        state.reading_n = force_n;
-        force_n
+    /// Starts the delay line; the force before the run is assumed to equal that at its start.
+    fn first_reading(&self, state: &mut State<T>, force_n: &mut T) {
+        state.line.push(*force_n, T::ZERO, self.tau_s);
+        state.reading_n = *force_n;
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut State<T>, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
+    fn reading(&self, state: &mut State<T>, signal: &mut Signal<T>, _time_s: T, dt_s: T) {
         state.line.push(signal.now_n, dt_s, self.tau_s);
         let begin_n = state.reading_n;
         state.reading_n = state.line.back(self.tau_s);
         if self.tau_s.value() <= 0.0 {
             // Without delay the jumps remain; the derivative is that of the ramp.
-            return signal.shifted(state.reading_n - signal.now_n);
+            *signal = signal.shifted(state.reading_n - signal.now_n);
+            return;
         }
-        Signal {
+        *signal = Signal {
             begin_n,
             end_n: state.reading_n,
             now_n: state.reading_n,
-        }
+        };
     }
 }

@@ -18,10 +18,11 @@
 //! Source: Hamon, Gautier & Garrec (2010) for gears and screws; Wolf & Iskandar (2018) for
 //! strain-wave gears.
 
-use super::{Effect, Info, Need, Parameter, Rig, Stage, Transmission};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::Motion;
+use crate::page::described;
 use crate::real::Real;
 
 /// Friction proportional to the force that the transmission carries.
@@ -30,8 +31,8 @@ pub struct TorqueProportional<T> {
     share: T,
 }
 
-impl<T: Real> Effect<T> for TorqueProportional<T> {
-    const INFO: Info = Info::new("torque_proportional", Stage::Contact)
+described! {
+    named_effect TorqueProportional = Info::new::<T, Self>("torque_proportional", Stage::Contact)
         .summary("friction proportional to the torque or force that the drive transmits")
         .equation(
             "F -> F + mu |F_t| sgn(v), F_t the sum of weight, inertial force and offset of \
@@ -43,30 +44,24 @@ impl<T: Real> Effect<T> for TorqueProportional<T> {
              all inertia counts, also a rotor before the gear; the offset counts as a \
              constant load, so a large sensor offset is an error",
         )
-        .parameters(&[Parameter::new(
-            "mu",
-            "-",
-            "friction per transmitted force, mean of driving and back-driving",
-            [0.0, 10.0],
-            &[0.1],
-        )
-        .null(0.0)])
         .needs(&[Need::NoFilm, Need::Transmitted]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            share: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    mu = "mu", "-", "friction per transmitted force, mean of driving and back-driving",
+        [0.0, 10.0], [0.1] null(0.0);
 }
 
-impl<T: Real> Transmission<T> for TorqueProportional<T> {
+impl<T: Real> TorqueProportional<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { share: p.mu }
+    }
+}
+
+impl<T: Real> Effect<T> for TorqueProportional<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), transmitted_n: T, sliding: &mut Friction<T>) {
+    fn transmission(&self, _state: &(), sliding: &mut Friction<T>, transmitted_n: T) {
         sliding.jump += self.share * transmitted_n.abs();
     }
 }

@@ -8,11 +8,11 @@
 //! w is the inverse of the speed at which the friction is half of the linear value. A fit can reach
 //! the null value of w, zero, whereas the null value of the speed would be infinite.
 
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Viscous friction that grows less than proportionally to the speed.
@@ -21,8 +21,8 @@ pub struct ViscousThinning<T> {
     slowness_s_m: T,
 }
 
-impl<T: Real> Effect<T> for ViscousThinning<T> {
-    const INFO: Info = Info::new("viscous_thinning", Stage::Contact)
+described! {
+    named_effect ViscousThinning = Info::new::<T, Self>("viscous_thinning", Stage::Contact)
         .summary("viscous friction that flattens with the speed: shear thinning of grease")
         .equation("F_v v -> F_v v / (1 + w |v|)")
         .source("Cross 1965; Grotjahn, Daemi & Heimann 2001; Bona & Indri 2005")
@@ -30,31 +30,31 @@ impl<T: Real> Effect<T> for ViscousThinning<T> {
             "one shape: it saturates at F_v/w; heating of the lubricant also flattens \
                  the curve",
         )
-        .parameters(&[Parameter::new(
-            "w",
-            "s/m",
-            "inverse of the speed at which the viscous friction is half of the linear value",
-            [0.0, 1e6],
-            &[10.0],
-        )
-        .null(0.0)
-        .start(Start::Slowness)])
         .needs(&[Need::NoFilm]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            slowness_s_m: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    w = "w", "s/m", "inverse of the speed at which the viscous friction is half of the linear value",
+        [0.0, 1e6], [10.0] null(0.0) .start(Start::Slowness);
 }
 
-impl<T: Real> Contact<T> for ViscousThinning<T> {
+impl<T: Real> ViscousThinning<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { slowness_s_m: p.w }
+    }
+}
+
+impl<T: Real> Effect<T> for ViscousThinning<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        _state: &mut (),
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         let thinner = T::ONE + journal.velocity_m_s.abs() * self.slowness_s_m;
         sliding.smooth = sliding.smooth / thinner;
     }

@@ -13,38 +13,14 @@
 //! changes the viscosity by less than 2 % in such a range. Walther's relation (ASTM D341) also has
 //! two parameters and is not better between 0 and 100 C: the tests compare the two.
 
-use crate::page::{Parameter, Start};
 use crate::real::Real;
 
-/// Vogel's constant C for mineral oils, C.
-const OILS_C: f64 = -95.0;
 /// Smallest distance from C at which the relation is evaluated, K; oil solidifies at a much larger
 /// distance.
 const NEAREST_K: f64 = 20.0;
 /// Limit of the natural logarithm of the relative viscosity; a larger change is outside the range
 /// of any oil in a bearing.
 const FURTHEST: f64 = 7.0;
-
-/// Description of the parameter `T_0_c`, the reference temperature.
-pub(super) const REFERENCE: Parameter = Parameter::new(
-    "T_0_c",
-    "C",
-    "reference temperature, at which the law's parameters hold",
-    [-100.0, 1000.0],
-    &[40.0],
-)
-.start(Start::ReferenceTemperature)
-.stated();
-
-/// Description of the parameter `C_c`, Vogel's constant C.
-pub(super) const C: Parameter = Parameter::new(
-    "C_c",
-    "C",
-    "Vogel's C: -95 for mineral oils",
-    [-250.0, -60.0],
-    &[OILS_C],
-)
-.stated();
 
 /// Vogel relation with its constants and the reference temperature.
 #[derive(Clone, Copy, Debug)]

@@ -8,10 +8,11 @@
 //! [`crate::Clock::Journal`], a change of the oil is therefore equivalent to a change of the
 //! temperature, and one model describes runs with several oils.
 
-use super::vogel::{Vogel, C, REFERENCE};
-use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::vogel::Vogel;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Viscosity that depends on the recorded temperature.
@@ -20,8 +21,8 @@ pub struct VogelViscosity<T> {
     relation: Vogel<T>,
 }
 
-impl<T: Real> Effect<T> for VogelViscosity<T> {
-    const INFO: Info = Info::new("vogel_viscosity", Stage::Lubricant)
+described! {
+    named_effect VogelViscosity = Info::new::<T, Self>("vogel_viscosity", Stage::Lubricant)
         .summary("oil whose viscosity falls as the recorded temperature rises")
         .equation(
             "Ub -> Ub m, t -> t/m, m = exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature",
@@ -34,42 +35,36 @@ impl<T: Real> Effect<T> for VogelViscosity<T> {
              specified; the journal's inertia as at T_0; a rig viscosity without temperature \
              applies at the mean recorded temperature",
         )
-        .parameters(&[
-            Parameter::new(
-                "B_k",
-                "K",
-                "Vogel's B: temperature sensitivity of the viscosity",
-                [0.0, 5000.0],
-                &[800.0],
-            )
-            .null(0.0),
-            C,
-            REFERENCE,
-        ])
         .needs(&[Need::Film, Need::Temperatures]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        let relation = Vogel {
-            b_k: parameters[0],
-            c_c: parameters[1],
-            reference_c: parameters[2],
-        };
-        Ok(Self { relation })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    b_k = "B_k", "K", "Vogel's B: temperature sensitivity of the viscosity",
+        [0.0, 5000.0], [800.0] null(0.0);
+    C_c;
+    T_0_c;
 }
 
-impl<T: Real> Lubricant<T> for VogelViscosity<T> {
+impl<T: Real> VogelViscosity<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        let relation = Vogel {
+            b_k: p.b_k,
+            c_c: p.c_c,
+            reference_c: p.t_0_c,
+        };
+        Self { relation }
+    }
+}
+
+impl<T: Real> Effect<T> for VogelViscosity<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn factor(&self, _state: &(), journal: &JournalMotion<T>) -> T {
-        self.relation.factor(journal.temperature_c)
+    fn lubricant(&self, _state: &(), journal: &JournalMotion<T>, factor: &mut T) {
+        *factor *= self.relation.factor(journal.temperature_c);
     }
 
     #[inline(always)]
-    fn rate(&self, _state: &(), journal: &JournalMotion<T>) -> T {
-        T::ONE / self.relation.factor(journal.temperature_c)
+    fn film_rate(&self, _state: &(), journal: &JournalMotion<T>, rate: &mut T) {
+        *rate *= T::ONE / self.relation.factor(journal.temperature_c);
     }
 }

@@ -13,11 +13,11 @@
 //! The temperature of one lumped body follows `exp(-t/tau)`. The change of friction is proportional
 //! to it as long as it is small.
 
-use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Excess friction that decays with time.
@@ -27,48 +27,41 @@ pub struct WarmUp<T> {
     rate_1_s: T,
 }
 
-impl<T: Real> Effect<T> for WarmUp<T> {
-    const INFO: Info = Info::new("warm_up", Stage::Contact)
+described! {
+    named_effect WarmUp = Info::new::<T, Self>("warm_up", Stage::Contact)
         .summary("warm-up: each run starts cold, and all friction falls with time")
         .equation("f -> f (1 + a exp(-t/tau)), t since the start of the run")
         .source("Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
         .limits("equally cold at the start of each run; one lumped temperature, small changes")
-        .parameters(&[
-            Parameter::new(
-                "a",
-                "-",
-                "relative excess of the cold drive",
-                [-0.95, 10.0],
-                &[0.2],
-            )
-            .null(0.0),
-            Parameter::new(
-                "tau_s",
-                "s",
-                "time in which the excess decays to 1/e",
-                [0.1, 1e5],
-                &[10.0, 60.0],
-            )
-            .log()
-            .start(Start::RunTime),
-        ])
         .needs(&[Need::NoFilm]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            excess: parameters[0],
-            rate_1_s: T::ONE / parameters[1],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    a = "a", "-", "relative excess of the cold drive", [-0.95, 10.0], [0.2] null(0.0);
+    tau_s = "tau_s", "s", "time in which the excess decays to 1/e",
+        [0.1, 1e5], [10.0, 60.0] .log().start(Start::RunTime);
 }
 
-impl<T: Real> Contact<T> for WarmUp<T> {
+impl<T: Real> WarmUp<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            excess: p.a,
+            rate_1_s: T::ONE / p.tau_s,
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for WarmUp<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+    fn contact(
+        &self,
+        _state: &mut (),
+        _from: &JournalMotion<T>,
+        journal: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        _dt_s: T,
+    ) {
         let factor = T::ONE + self.excess * (-(journal.time_s * self.rate_1_s)).exp();
         sliding.jump *= factor;
         sliding.smooth *= factor;

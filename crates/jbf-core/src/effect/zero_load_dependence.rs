@@ -3,10 +3,11 @@
 //! Source: a pressure that acts on a rod's area; a screw or a guide that is not aligned with its
 //! load. Hamon, Gautier & Garrec (2010) for the asymmetry of loaded transmissions.
 
-use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
-use crate::error::ParameterError;
+use super::registry::named_effect;
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::described;
 use crate::real::Real;
 
 /// Force proportional to the load, independent of the direction of motion.
@@ -15,36 +16,35 @@ pub struct ZeroLoadDependence<T> {
     share: T,
 }
 
-impl<T: Real> Effect<T> for ZeroLoadDependence<T> {
-    const INFO: Info = Info::new("zero_load_dependence", Stage::Other)
+described! {
+    named_effect ZeroLoadDependence = Info::new::<T, Self>("zero_load_dependence", Stage::Other)
         .summary("force in one direction that grows with the load, pressure or transmitted force")
         .equation("F -> F + k L, L the recorded load")
         .source("Hamon, Gautier & Garrec 2010")
         .limits("linear in the load; also present at rest")
-        .parameters(&[
-            Parameter::new("k", "-", "force per load", [-10.0, 10.0], &[0.01])
-                .null(0.0)
-                .signed(),
-        ])
         .needs(&[Need::NoFilm, Need::Loads]);
-    type State = ();
-
-    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
-        Self::INFO.check(parameters)?;
-        Ok(Self {
-            share: parameters[0],
-        })
-    }
-
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+    k = "k", "-", "force per load", [-10.0, 10.0], [0.01] null(0.0) .signed();
 }
 
-impl<T: Real> OtherFriction<T> for ZeroLoadDependence<T> {
+impl<T: Real> ZeroLoadDependence<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self { share: p.k }
+    }
+}
+
+impl<T: Real> Effect<T> for ZeroLoadDependence<T> {
+    type State = ();
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+
     #[inline(always)]
-    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
-        Friction {
-            jump: T::ZERO,
-            smooth: self.share * journal.load_n,
-        }
+    fn add_friction(
+        &self,
+        _state: &(),
+        journal: &JournalMotion<T>,
+        sum_n: &mut Friction<T>,
+        _transmitted_n: &mut T,
+    ) {
+        sum_n.smooth += self.share * journal.load_n;
     }
 }

@@ -8,13 +8,26 @@
 //! `F_s` and slides with `F_c`. With a rigid drive, which imposes the speed, the friction at rest
 //! is undetermined and breakaway takes no time. `F_s` is then not identifiable, and a fit holds it
 //! constant. A reversal without a stop is not a rest.
+//!
+//! ```
+//! use jbf_core::law::coulomb::{Coulomb, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(Coulomb::new(Parameters { f_c: 4.0, f_s: 6.0, f_v: 10.0 })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
-use super::newtons::{in_newtons, moving, F_C, F_S, F_V};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
+use crate::page::described;
 use crate::real::Real;
 
 /// Law with static, kinetic and viscous friction.
@@ -25,8 +38,8 @@ pub struct Coulomb<T> {
     viscous_n_s_m: T,
 }
 
-impl<T: Real> Named<T> for Coulomb<T> {
-    const INFO: Info = Info::new::<T, Self>("coulomb")
+described! {
+    named_law Coulomb = Info::new::<T, Self>("coulomb")
         .summary("static, Coulomb and viscous friction")
         .equation("F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest")
         .source("Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1")
@@ -34,21 +47,19 @@ impl<T: Real> Named<T> for Coulomb<T> {
             "no memory, no decrease of friction with speed; F_s is visible only with an \
                  elastic drive",
         )
-        .parameters(&[F_C, F_S, F_V])
         .with_a_dry_level();
+    F_c;
+    F_s;
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            kinetic_n: values[0],
-            static_n: values[1],
-            viscous_n_s_m: values[2],
-        })
+impl<T: Real> Coulomb<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            kinetic_n: p.f_c,
+            static_n: p.f_s,
+            viscous_n_s_m: p.f_v,
+        }
     }
 }
 

@@ -11,15 +11,28 @@
 //! ```text
 //! u(s) = u_0 (1 - (1 - i) k s u_0^(i-1))^(1/(1-i)),   u_0 exp(-k s) for i = 1
 //! ```
+//!
+//! ```
+//! use jbf_core::law::dahl::{Dahl, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(Dahl::new(Parameters { f_c: 4.0, sigma_0: 1e5, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
 use super::bristle::{along, LEAST_LEVEL};
-use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
+use crate::page::{described, Start};
 use crate::path::Leg;
 use crate::real::Real;
 
@@ -79,37 +92,28 @@ impl<T: Real> Dahl<T> {
     }
 }
 
-impl<T: Real> Named<T> for Dahl<T> {
-    const INFO: Info = Info::new::<T, Self>("dahl")
+described! {
+    named_law Dahl = Info::new::<T, Self>("dahl")
         .summary("elastic contact before sliding, as a function of displacement only")
         .equation("dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v")
         .source("Dahl 1968, 1977; Cohn 1998, section 2.1.3")
-        .limits("no Stribeck effect, no static friction above F_c; inner loops drift")
-        .parameters(&[
-            F_C,
-            stiffness("sigma_0", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
-            number(
-                "exponent",
-                "shape of the transition: below 1 ductile, above 1 brittle",
-                [0.01, 5.0],
-                &[1.0],
-            ),
-            F_V,
-        ]);
+        .limits("no Stribeck effect, no static friction above F_c; inner loops drift");
+    F_c;
+    sigma_0 = "sigma_0", "N/m", "stiffness at a reversal",
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+    exponent = "exponent", "-", "shape of the transition: below 1 ductile, above 1 brittle",
+        [0.01, 5.0], [1.0] .log();
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            coulomb_n: values[0],
-            stiffness_n_m: values[1],
-            exponent: values[2],
-            viscous_n_s_m: values[3],
-        })
+impl<T: Real> Dahl<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            coulomb_n: p.f_c,
+            stiffness_n_m: p.sigma_0,
+            exponent: p.exponent,
+            viscous_n_s_m: p.f_v,
+        }
     }
 }
 

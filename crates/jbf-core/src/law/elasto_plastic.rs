@@ -16,16 +16,28 @@
 //! laws of Dahl and LuGre drift. As b approaches 1 the law becomes a spring and a slider. The
 //! effect `stribeck_excess` adds a Stribeck curve, and `dry_load_dependence` a friction level that
 //! grows with the load. Both change F_c and leave sigma_0 and b constant.
+//!
+//! ```
+//! use jbf_core::law::elasto_plastic::{ElastoPlastic, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(ElastoPlastic::new(Parameters { f_c: 4.0, sigma_0: 1e5, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
 use super::bristle::{along, bent};
-use super::newtons::{in_newtons, moving, stiffness, F_C, F_V};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::page::Parameter;
+use crate::page::{described, Start};
 use crate::path::Leg;
 use crate::real::Real;
 
@@ -66,41 +78,31 @@ impl<T: Real> ElastoPlastic<T> {
     }
 }
 
-impl<T: Real> Named<T> for ElastoPlastic<T> {
-    const INFO: Info = Info::new::<T, Self>("elasto_plastic")
+described! {
+    named_law ElastoPlastic = Info::new::<T, Self>("elasto_plastic")
         .summary("elastic up to a breakaway force, plastic beyond: no drift below it")
         .equation(
             "dF/dx = sigma_0 while F sgn(v) < b F_c, sigma_0 (1 - (F/F_c) sgn(v))/(1 - b) beyond; \
                    + F_v v",
         )
         .source("Dupont, Hayward, Armstrong & Altpeter 2002")
-        .limits("no Stribeck effect of its own; inner loops beyond the breakaway force drift")
-        .parameters(&[
-            F_C,
-            stiffness("sigma_0", "stiffness up to breakaway", &[1e5, 1e6, 1e4]),
-            Parameter::new(
-                "breakaway",
-                "-",
-                "fraction of F_c up to which the contact is elastic",
-                [0.0, 0.999],
-                &[0.7, 0.2],
-            ),
-            F_V,
-        ]);
+        .limits("no Stribeck effect of its own; inner loops beyond the breakaway force drift");
+    F_c;
+    sigma_0 = "sigma_0", "N/m", "stiffness up to breakaway",
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+    breakaway = "breakaway", "-", "fraction of F_c up to which the contact is elastic",
+        [0.0, 0.999], [0.7, 0.2];
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            coulomb_n: values[0],
-            stiffness_n_m: values[1],
-            breakaway: values[2],
-            viscous_n_s_m: values[3],
-        })
+impl<T: Real> ElastoPlastic<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            coulomb_n: p.f_c,
+            stiffness_n_m: p.sigma_0,
+            breakaway: p.breakaway,
+            viscous_n_s_m: p.f_v,
+        }
     }
 }
 

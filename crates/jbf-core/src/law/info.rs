@@ -13,6 +13,8 @@ use crate::real::Real;
 pub struct Info {
     /// Unique name of the law in files and options.
     pub name: &'static str,
+    /// Name of the type in Rust: `law::NAME::RUST_TYPE`.
+    pub rust_type: &'static str,
     /// Physical meaning of the law, in one line.
     pub summary: &'static str,
     /// Equation of the law, in plain characters.
@@ -45,9 +47,10 @@ pub struct Info {
 
 impl Info {
     /// Creates a description of the law `L` without parameters, as a law in newtons without a film.
-    pub const fn new<T: Real, L: Law<T>>(name: &'static str) -> Self {
+    pub(crate) const fn new<T: Real, L: Law<T>>(name: &'static str) -> Self {
         Self {
             name,
+            rust_type: "",
             summary: "",
             equation: "",
             source: "",
@@ -62,49 +65,55 @@ impl Info {
     }
 
     /// Sets the physical meaning of the law, in one line.
-    pub const fn summary(mut self, text: &'static str) -> Self {
+    pub(crate) const fn summary(mut self, text: &'static str) -> Self {
         self.summary = text;
         self
     }
 
     /// Sets the equation of the law, in plain characters.
-    pub const fn equation(mut self, text: &'static str) -> Self {
+    pub(crate) const fn equation(mut self, text: &'static str) -> Self {
         self.equation = text;
         self
     }
 
     /// Sets the source of the equation.
-    pub const fn source(mut self, text: &'static str) -> Self {
+    pub(crate) const fn source(mut self, text: &'static str) -> Self {
         self.source = text;
         self
     }
 
     /// Sets the limits of validity of the equation.
-    pub const fn limits(mut self, text: &'static str) -> Self {
+    pub(crate) const fn limits(mut self, text: &'static str) -> Self {
         self.limits = text;
         self
     }
 
+    /// Sets the name of the type in Rust.
+    pub(crate) const fn rust_type(mut self, name: &'static str) -> Self {
+        self.rust_type = name;
+        self
+    }
+
     /// Sets the descriptions of the parameters, in the order of their values.
-    pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
+    pub(crate) const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
         self.parameters = pages;
         self
     }
 
     /// Marks the law as one that is computed from the geometry, lubricant and load of a bearing.
-    pub const fn on_a_bearing(mut self) -> Self {
+    pub(crate) const fn on_a_bearing(mut self) -> Self {
         self.needs_bearing = true;
         self
     }
 
     /// Marks the law as one with a lubricant film.
-    pub const fn with_a_film(mut self) -> Self {
+    pub(crate) const fn with_a_film(mut self) -> Self {
         self.has_film = true;
         self
     }
 
     /// Marks the law as one with a dry friction that is independent of the load.
-    pub const fn with_a_dry_level(mut self) -> Self {
+    pub(crate) const fn with_a_dry_level(mut self) -> Self {
         self.has_dry_level = true;
         self
     }

@@ -14,16 +14,28 @@
 //! With `y = sigma_0 z`, y relaxes towards `sigma_0 g sgn(v)` over the sliding distance at the rate
 //! `1/g`. The solution is exact in the distance if the level changes linearly. Any step is
 //! therefore stable, and short steps are accurate to second order.
+//!
+//! ```
+//! use jbf_core::law::lugre::{LuGre, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(LuGre::new(Parameters { f_c: 4.0, f_s: 6.0, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
 use super::bristle::{bent, LEAST_LEVEL};
-use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::page::Start;
+use crate::page::{described, Start};
 use crate::path::legs;
 use crate::real::Real;
 
@@ -58,46 +70,38 @@ impl<T: Real> LuGre<T> {
     }
 }
 
-impl<T: Real> Named<T> for LuGre<T> {
-    const INFO: Info = Info::new::<T, Self>("lugre")
+described! {
+    named_law LuGre = Info::new::<T, Self>("lugre")
         .summary("bristles with a Stribeck curve: presliding, breakaway and frictional lag")
         .equation(
             "F = sigma_0 z + sigma_1 exp(-(v/v_d)^2) z' + F_v v, z' = v - |v| z/g, \
                    sigma_0 g = F_c + (F_s - F_c) exp(-(v/v_s)^2)",
         )
         .source("Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1")
-        .limits("drifts under small vibration; frictional lag in sliding by the bristle only")
-        .parameters(&[
-            F_C,
-            F_S,
-            V_S,
-            stiffness("sigma_0", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
-            damping("sigma_1", "damping of the bristles", &[100.0]).start(Start::Damping),
-            speed(
-                "v_d",
-                "speed at which the damping has decayed to 1/e",
-                &[0.1],
-            )
-            .start(Start::UsualSpeed),
-            F_V,
-        ]);
+        .limits("drifts under small vibration; frictional lag in sliding by the bristle only");
+    F_c;
+    F_s;
+    v_s;
+    sigma_0 = "sigma_0", "N/m", "stiffness of the bristles",
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+    sigma_1 = "sigma_1", "N s/m", "damping of the bristles",
+        [0.0, 1e7], [100.0] .start(Start::Damping);
+    v_d = "v_d", "m/s", "speed at which the damping has decayed to 1/e",
+        [1e-7, 1e3], [0.1] .log().start(Start::UsualSpeed);
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            coulomb_n: values[0],
-            static_n: values[1],
-            stribeck_m_s: values[2],
-            stiffness_n_m: values[3],
-            damping_n_s_m: values[4],
-            damping_speed_m_s: values[5],
-            viscous_n_s_m: values[6],
-        })
+impl<T: Real> LuGre<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            coulomb_n: p.f_c,
+            static_n: p.f_s,
+            stribeck_m_s: p.v_s,
+            stiffness_n_m: p.sigma_0,
+            damping_n_s_m: p.sigma_1,
+            damping_speed_m_s: p.v_d,
+            viscous_n_s_m: p.f_v,
+        }
     }
 }
 

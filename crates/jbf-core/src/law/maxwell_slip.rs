@@ -35,14 +35,27 @@
 //!
 //! The law is rate-independent: a sticking element is a spring and a sliding one is at its level. A
 //! step in one direction is therefore exact and stable for any length.
+//!
+//! ```
+//! use jbf_core::law::maxwell_slip::{MaxwellSlip, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(MaxwellSlip::new(Parameters { f_c: 4.0, sigma_0: 1e5, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
-use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
+use crate::page::{described, Start};
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
@@ -127,8 +140,8 @@ fn sum<T: Real>(forces_n: &[T; ELEMENTS]) -> T {
     forces_n.iter().fold(T::ZERO, |sum, &force| sum + force)
 }
 
-impl<T: Real> Named<T> for MaxwellSlip<T> {
-    const INFO: Info = Info::new::<T, Self>("maxwell_slip")
+described! {
+    named_law MaxwellSlip = Info::new::<T, Self>("maxwell_slip")
         .summary(
             "parallel spring-slider elements: presliding with nonlocal memory of all \
                   reversals",
@@ -138,36 +151,27 @@ impl<T: Real> Named<T> for MaxwellSlip<T> {
                    F_c (1 - (1 - (1 - i) sigma_0 x/F_c)^(1/(1 - i)))",
         )
         .source("Iwan 1966; Lampaert, Swevers & Al-Bender 2003; Al-Bender et al. 2005")
-        .limits("no Stribeck effect of its own; no frictional lag in sliding")
-        .parameters(&[
-            F_C,
-            stiffness("sigma_0", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
-            number(
-                "exponent",
-                "shape of the transition: near 0 all slip at once, 1/3 a sphere, 1 an exponential",
-                [0.01, 2.0],
-                &[0.5, 0.1],
-            ),
-            F_V,
-        ]);
+        .limits("no Stribeck effect of its own; no frictional lag in sliding");
+    F_c;
+    sigma_0 = "sigma_0", "N/m", "stiffness at a reversal",
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+    exponent = "exponent", "-", "shape of the transition: near 0 all slip at once, 1/3 a sphere, 1 an exponential",
+        [0.01, 2.0], [0.5, 0.1] .log();
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        let (whole, exponent) = (values[1], values[2]);
+impl<T: Real> MaxwellSlip<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        let (whole, exponent) = (p.sigma_0, p.exponent);
         let border = borders();
-        Ok(Self {
-            coulomb_n: values[0],
-            viscous_n_s_m: values[3],
+        Self {
+            coulomb_n: p.f_c,
+            viscous_n_s_m: p.f_v,
             stiffness_n_m: core::array::from_fn(|j| whole * T::of(border[j + 1] - border[j])),
             share: core::array::from_fn(|j| {
                 carried(border[j + 1], exponent) - carried(border[j], exponent)
             }),
-        })
+        }
     }
 }
 

@@ -1,12 +1,13 @@
 //! Friction laws, one per file.
 //!
-//! A law computes a friction coefficient from the motion. Contributions of the rig are effects, see
-//! [`crate::effect`].
+//! A law computes friction from the motion. Contributions of the machine are effects, see
+//! [`crate::effect`]. Each module has a type for the law, and the struct `Parameters` with which its
+//! `new` creates it. [`with_law`] creates a law by name from a list of values.
 //!
-//! Laws in newtons (all except those of a bearing) use a load of 1 N, so that the coefficient
-//! equals the force.
+//! All laws except those of a journal bearing return newtons and do not depend on the load: they use
+//! a load of 1 N, so that the coefficient equals the force.
 //!
-//! To add a law, write its file with [`Law`], [`Named`] and [`SteadyCurve`], declare the module
+//! To add a law, write its file with `described!`, [`Law`] and [`SteadyCurve`], declare the module
 //! below, and add the law to `laws!`.
 
 pub mod coulomb;
@@ -68,7 +69,7 @@ pub trait Law<T: Real> {
     /// film.
     ///
     /// The indices are given only if friction depends on the film through [`Law::film`] alone; see
-    /// [`crate::film_path`].
+    /// `jbf_batch::film_path`.
     const FILM_PARAMETERS: Option<[usize; 2]> = None;
 
     /// Returns the state of the film that determines friction.
@@ -154,24 +155,4 @@ registry::laws! {
     maxwell_slip::MaxwellSlip,
     elasto_plastic::ElastoPlastic,
     rate_and_state::RateAndState,
-}
-
-/// Returns true if the catalogue has a law with this name and the values are valid for its
-/// parameters.
-///
-/// There must be one value per parameter, each within the bounds. The function can check constants
-/// at compile time, for example those that `jbf export` writes.
-///
-/// ```
-/// const _: () = assert!(jbf_core::law::fits("journal", &[0.26, 0.06, 7.5e5, 33.0]));
-/// ```
-pub const fn fits(name: &str, values: &[f64]) -> bool {
-    let mut i = 0;
-    while i < CATALOGUE.len() {
-        if crate::page::same(CATALOGUE[i].name, name) {
-            return crate::page::values_fit(CATALOGUE[i].parameters, values);
-        }
-        i += 1;
-    }
-    false
 }

@@ -32,14 +32,26 @@
 //! The last equation is exact to first order in the change of the speed for short steps, and in
 //! the limit of long ones. The logarithm of the age is accurate to third order in short steps, to
 //! 0.1 in steps of up to a hundred D_c, and to 0.23 in any step (one that comes to rest).
+//!
+//! ```
+//! use jbf_core::law::rate_and_state::{RateAndState, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(RateAndState::new(Parameters { f_0: 4.0, a: 0.05, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
-use super::newtons::{force, in_newtons, moving, speed, F_V};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
-use crate::page::{Parameter, Start};
+use crate::page::{described, Start};
 use crate::real::Real;
 
 /// Smallest and largest age of a contact, s; the limits prevent an overflow in single precision.
@@ -124,8 +136,8 @@ fn limited<T: Real>(age_s: T) -> T {
     age_s.max(T::of(AGES_S[0])).min(T::of(AGES_S[1]))
 }
 
-impl<T: Real> Named<T> for RateAndState<T> {
-    const INFO: Info = Info::new::<T, Self>("rate_and_state")
+described! {
+    named_law RateAndState = Info::new::<T, Self>("rate_and_state")
         .summary("friction that depends on the logarithms of speed and contact age")
         .equation(
             "F = a asinh[|v|/(2 v_0) exp((F_0 + b ln(v_0 theta/D_c))/a)] sgn(v) + F_v v, \
@@ -136,62 +148,32 @@ impl<T: Real> Named<T> for RateAndState<T> {
             "no elastic deflection before sliding; constant normal load; valid over a few \
              decades of speed; contact age at the start of a run unknown",
         )
-        .parameters(&[
-            force(
-                "F_0",
-                "friction in steady sliding at the speed v_0, without the viscous part",
-                &[10.0],
-            )
-            .start(Start::Kinetic),
-            Parameter::new(
-                "a",
-                "N",
-                "direct effect: immediate increase of friction per e-fold of the speed",
-                [0.0, 1e7],
-                &[0.1],
-            )
-            .start(Start::Drag),
-            Parameter::new(
-                "b",
-                "N",
-                "ageing effect: increase of friction per e-fold of the contact age",
-                [0.0, 1e7],
-                &[0.15],
-            )
-            .start(Start::Drag),
-            Parameter::new(
-                "D_c",
-                "m",
-                "slip distance over which the contact is renewed",
-                [1e-12, 1e3],
-                &[1e-5, 1e-4, 1e-6],
-            )
-            .log()
-            .start(Start::SlipDistance),
-            speed("v_0", "reference speed of F_0", &[0.01])
-                .start(Start::UsualSpeed)
-                .stated(),
-            F_V,
-        ])
         .with_a_dry_level();
+    f_0 = "F_0", "N", "friction in steady sliding at the speed v_0, without the viscous part",
+        [1e-6, 1e7], [10.0] .log().start(Start::Kinetic);
+    a = "a", "N", "direct effect: immediate increase of friction per e-fold of the speed",
+        [0.0, 1e7], [0.1] .start(Start::Drag);
+    b = "b", "N", "ageing effect: increase of friction per e-fold of the contact age",
+        [0.0, 1e7], [0.15] .start(Start::Drag);
+    d_c = "D_c", "m", "slip distance over which the contact is renewed",
+        [1e-12, 1e3], [1e-5, 1e-4, 1e-6] .log().start(Start::SlipDistance);
+    v_0 = "v_0", "m/s", "reference speed of F_0",
+        [1e-7, 1e3], [0.01] .log().start(Start::UsualSpeed).stated();
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            reference_n: values[0],
-            direct_n: values[1],
-            ageing_n: values[2],
-            slip_m: values[3],
-            reference_m_s: values[4],
-            viscous_n_s_m: values[5],
-            log_slip: values[3].ln(),
-            log_reference: values[4].ln(),
-        })
+impl<T: Real> RateAndState<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            reference_n: p.f_0,
+            direct_n: p.a,
+            ageing_n: p.b,
+            slip_m: p.d_c,
+            reference_m_s: p.v_0,
+            viscous_n_s_m: p.f_v,
+            log_slip: p.d_c.ln(),
+            log_reference: p.v_0.ln(),
+        }
     }
 }
 

@@ -2,6 +2,25 @@
 //!
 //! The list in `law/mod.rs` is its input.
 
+/// Implements [`Named`](super::Named) for a law in newtons with `Parameters`.
+macro_rules! named_law {
+    ($Owner:ident $info:expr) => {
+        impl<T: $crate::real::Real> $crate::law::Named<T> for $Owner<T> {
+            const INFO: $crate::law::Info =
+                $info.rust_type(stringify!($Owner)).parameters(PARAMETERS);
+
+            fn build(
+                _bearing: Option<&$crate::bearing::Bearing>,
+                _load_n: Option<f64>,
+                values: &[T],
+                _clock: $crate::clock::Clock,
+            ) -> Result<Self, $crate::error::ParameterError> {
+                Parameters::of(values).map(Self::with_parameters)
+            }
+        }
+    };
+}
+
 macro_rules! laws {
     ($($module:ident::$Type:ident),* $(,)?) => {
         /// Descriptions of all laws; the first is the default law.
@@ -25,14 +44,6 @@ macro_rules! laws {
                 return Ok(visitor.visit(law));
             })*
             Err(ParameterError::UnknownLaw)
-        }
-
-        /// Returns the Rust type of the law `name`: `TYPE` in `law::NAME::TYPE`.
-        pub fn type_name(name: &str) -> Option<&'static str> {
-            $(if name == <$module::$Type<f64> as Named<f64>>::INFO.name {
-                return Some(stringify!($Type));
-            })*
-            None
         }
 
         /// Computes the steady friction (N) of the law `name` at speeds (m/s, not zero) into `out`.
@@ -61,4 +72,4 @@ macro_rules! laws {
     };
 }
 
-pub(crate) use laws;
+pub(crate) use {laws, named_law};

@@ -16,16 +16,28 @@
 //!
 //! At a stop the spring keeps its deflection: the force does not jump. A run starts after a long
 //! rest.
+//!
+//! ```
+//! use jbf_core::law::seven_parameter::{SevenParameter, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(SevenParameter::new(Parameters { f_c: 4.0, f_s_inf: 2.0, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
-use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::page::{Parameter, Start};
+use crate::page::{described, Start};
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
@@ -100,8 +112,8 @@ impl<T: Real> SevenParameter<T> {
     }
 }
 
-impl<T: Real> Named<T> for SevenParameter<T> {
-    const INFO: Info = Info::new::<T, Self>("seven_parameter")
+described! {
+    named_law SevenParameter = Info::new::<T, Self>("seven_parameter")
         .summary(
             "elastic contact, Stribeck curve with a pure delay, static friction that \
                   grows at rest",
@@ -111,50 +123,31 @@ impl<T: Real> Named<T> for SevenParameter<T> {
                    sgn(v); F_s(t_2) = F_sa + (F_s_inf - F_sa) t_2/(t_2 + gamma)",
         )
         .source("Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1")
-        .limits("switches between stuck and sliding; growing static friction needs tau_L > 0")
-        .parameters(&[
-            stiffness("k_t", "stiffness of the stuck contact", &[1e5, 1e6, 1e4]),
-            F_C,
-            F_V,
-            force(
-                "F_s_inf",
-                "Stribeck friction after a long rest; breakaway is at F_c + F_s",
-                &[3.0],
-            )
-            .start(Start::BreakawayExcess),
-            V_S,
-            // The delay may be zero, so it is not a scale.
-            Parameter::new(
-                "tau_L_s",
-                "s",
-                "delay of friction relative to the speed",
-                [0.0, 1.0],
-                &[0.01, 0.1],
-            ),
-            time(
-                "gamma_s",
-                "rest duration in which half of the static friction recovers",
-                [1e-4, 1e5],
-                &[1.0],
-            ),
-        ]);
+        .limits("switches between stuck and sliding; growing static friction needs tau_L > 0");
+    k_t = "k_t", "N/m", "stiffness of the stuck contact",
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+    F_c;
+    F_v;
+    f_s_inf = "F_s_inf", "N", "Stribeck friction after a long rest; breakaway is at F_c + F_s",
+        [1e-6, 1e7], [3.0] .log().start(Start::BreakawayExcess);
+    v_s;
+    // The delay may be zero, so it is not a scale.
+    tau_l_s = "tau_L_s", "s", "delay of friction relative to the speed", [0.0, 1.0], [0.01, 0.1];
+    gamma_s = "gamma_s", "s", "rest duration in which half of the static friction recovers",
+        [1e-4, 1e5], [1.0] .log();
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            stiffness_n_m: values[0],
-            coulomb_n: values[1],
-            viscous_n_s_m: values[2],
-            static_n: values[3],
-            stribeck_m_s: values[4],
-            delay_s: values[5],
-            dwell_s: values[6],
-        })
+impl<T: Real> SevenParameter<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            stiffness_n_m: p.k_t,
+            coulomb_n: p.f_c,
+            viscous_n_s_m: p.f_v,
+            static_n: p.f_s_inf,
+            stribeck_m_s: p.v_s,
+            delay_s: p.tau_l_s,
+            dwell_s: p.gamma_s,
+        }
     }
 }
 

@@ -4,13 +4,26 @@
 //!
 //! Source: Tustin (1947), delta = 1; Bo & Pavelescu (1982), delta 0.5 to 1; Armstrong-Helouvry
 //! (1991), delta = 2; Cohn (1998), section 2.2.
+//!
+//! ```
+//! use jbf_core::law::stribeck::{Stribeck, Parameters};
+//! use jbf_core::{Chain, Motion};
+//!
+//! let chain = Chain::new(Stribeck::new(Parameters { f_c: 4.0, f_s: 6.0, v_s: 0.01, ..Parameters::default() })?);
+//! let mut state = chain.start(&Motion::default());
+//! for _ in 0..100 {
+//!     chain.step_velocity(&mut state, 0.01, 0.001);
+//! }
+//! assert!(state.reading_n > 3.0 && state.reading_n < 7.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
-use super::newtons::{in_newtons, moving, number, F_C, F_S, F_V, V_S};
-use super::{Info, Law, Named, SteadyCurve};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
+use super::newtons::{in_newtons, moving};
+use super::registry::named_law;
+use super::{Info, Law, SteadyCurve};
 use crate::error::ParameterError;
 use crate::friction::Friction;
+use crate::page::described;
 use crate::real::Real;
 
 /// Law with a Stribeck curve and without memory.
@@ -23,8 +36,8 @@ pub struct Stribeck<T> {
     viscous_n_s_m: T,
 }
 
-impl<T: Real> Named<T> for Stribeck<T> {
-    const INFO: Info = Info::new::<T, Self>("stribeck")
+described! {
+    named_law Stribeck = Info::new::<T, Self>("stribeck")
         .summary("friction that falls from a static level, then grows with speed")
         .equation("F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)")
         .source("Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2")
@@ -32,34 +45,24 @@ impl<T: Real> Named<T> for Stribeck<T> {
             "a curve without memory: equal friction for rising and falling speed; F_s may be \
              below F_c, as for way lubricants",
         )
-        .parameters(&[
-            F_C,
-            F_S,
-            V_S,
-            number(
-                "delta",
-                "shape of the decrease: 1 Tustin, 2 Armstrong",
-                [0.2, 5.0],
-                &[2.0, 1.0],
-            ),
-            F_V,
-        ])
         .with_a_dry_level();
+    F_c;
+    F_s;
+    v_s;
+    delta = "delta", "-", "shape of the decrease: 1 Tustin, 2 Armstrong",
+        [0.2, 5.0], [2.0, 1.0] .log();
+    F_v;
+}
 
-    fn build(
-        _bearing: Option<&Bearing>,
-        _load_n: Option<f64>,
-        values: &[T],
-        _clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        Self::INFO.check(values)?;
-        Ok(Self {
-            coulomb_n: values[0],
-            static_n: values[1],
-            stribeck_m_s: values[2],
-            delta: values[3],
-            viscous_n_s_m: values[4],
-        })
+impl<T: Real> Stribeck<T> {
+    fn with_parameters(p: Parameters<T>) -> Self {
+        Self {
+            coulomb_n: p.f_c,
+            static_n: p.f_s,
+            stribeck_m_s: p.v_s,
+            delta: p.delta,
+            viscous_n_s_m: p.f_v,
+        }
     }
 }
 

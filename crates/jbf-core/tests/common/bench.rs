@@ -1,12 +1,12 @@
 //! Control loop with a simulated shaft, without noise, for tests of controllers.
 
 use super::{chain_round, law};
-use jbf_core::compensator::carried::Whole;
 use jbf_core::compensator::learning::{self, Learned, Rule};
+use jbf_core::compensator::model::ChainModel;
 use jbf_core::compensator::observed::Settings;
 use jbf_core::compensator::table::Axis;
 use jbf_core::compensator::{
-    Bare, Compensator, Coulomb, Learning, NoCompensation, Observed, Repetitive, Table,
+    Compensator, Coulomb, LawModel, Learning, NoCompensation, Observed, Repetitive, Table,
 };
 use jbf_core::controller::{BaseLaw, Controller, Limits, Parts, State};
 use jbf_core::encoder::Encoder;
@@ -103,8 +103,8 @@ pub fn settings(control: Control) -> Settings {
 }
 
 /// Creates a compensator with a friction law, without effects, and an observer.
-pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
-    let model = Bare::new(law(Clock::Journal), 0.0127, DRIVE.volts_per_n, LOAD_N);
+pub fn observed<T: Real>(control: Control) -> Observed<T, LawModel<T, Journal<T>>> {
+    let model = LawModel::new(law(Clock::Journal), 0.0127, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")
 }
 
@@ -112,9 +112,9 @@ pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
 pub fn observed_with<T: Real>(
     control: Control,
     effects: &[(&str, &[f64])],
-) -> Observed<T, Whole<T, Journal<T>>> {
+) -> Observed<T, ChainModel<T, Journal<T>>> {
     let chain = chain_round(law(Clock::Journal), effects);
-    let model = Whole::new(chain, DRIVE.volts_per_n, LOAD_N);
+    let model = ChainModel::new(chain, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")
 }
 

@@ -11,9 +11,9 @@ pub mod random;
 pub mod table;
 
 use jbf_core::effect::{Effects, Info, Need, Rig};
-use jbf_core::law::coulomb::Coulomb;
+use jbf_core::law::coulomb::{self, Coulomb};
 use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::law::{Law, Named};
+use jbf_core::law::Law;
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 
 /// Load on the bearing in Table 4.2 of Cohn (1998), N.
@@ -37,12 +37,11 @@ pub fn law<T: Real>(clock: Clock) -> Journal<T> {
 
 /// Law in newtons with dry and viscous friction, `(F_c + F_v |v|) sgn v` in motion.
 pub fn newtons(kinetic_n: f64, viscous_n_s_m: f64) -> Coulomb<f64> {
-    Coulomb::build(
-        None,
-        None,
-        &[kinetic_n, kinetic_n, viscous_n_s_m],
-        Clock::Journal,
-    )
+    Coulomb::new(coulomb::Parameters {
+        f_c: kinetic_n,
+        f_s: kinetic_n,
+        f_v: viscous_n_s_m,
+    })
     .expect("a sound law")
 }
 

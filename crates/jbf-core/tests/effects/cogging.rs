@@ -31,7 +31,7 @@ fn force_acts_at_rest_without_changing_the_holding_level() {
     for r in readings(&chain, 0.01, 5, held) {
         assert!((r - expected).abs() < 1e-12);
     }
-    let felt = chain.felt(&chain.start(&held(0.0)));
+    let felt = chain.reaction_n(&chain.start(&held(0.0)));
     assert_eq!(felt.jump, F_C_N);
 }
 

@@ -50,6 +50,6 @@ fn holding_level_varies_with_the_position_but_the_reading_at_rest_is_zero() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("pitch_ripple", &[0.5, 0.01, 0.0])]);
     let state = chain.start(&held::<f64>(1.1, 0.0));
     let factor = 1.0 + 0.5 * (TAU * 1.1 * Bearing::THESIS.radius_m / 0.01).cos();
-    assert!((chain.felt(&state).jump - F_C_N * factor).abs() < 1e-12);
+    assert!((chain.reaction_n(&state).jump - F_C_N * factor).abs() < 1e-12);
     assert_eq!(state.reading_n, 0.0);
 }

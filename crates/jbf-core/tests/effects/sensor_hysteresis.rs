@@ -4,8 +4,8 @@
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings, LOAD_N};
-use jbf_core::effect::sensor_hysteresis::SensorHysteresis;
-use jbf_core::effect::{Effect, Instrument, Rig, Signal};
+use jbf_core::effect::sensor_hysteresis::{Parameters, SensorHysteresis};
+use jbf_core::effect::{Effect, Rig, Signal};
 use jbf_core::{Dual, Motion, Real};
 
 fn smooth<T: Real>(force_n: T) -> Signal<T> {
@@ -18,17 +18,17 @@ fn smooth<T: Real>(force_n: T) -> Signal<T> {
 
 /// Readings of a load cell with a hysteresis of this half width for a sequence of forces, N.
 fn read<T: Real>(half_width_n: T, forces_n: &[T]) -> Vec<T> {
-    let cell = SensorHysteresis::new(&[half_width_n]).expect("within bounds");
-    let rig = Rig {
-        radius_m: T::ONE,
-        count: T::ONE,
-    };
-    let mut state = cell.start(&Motion::at_rest(T::ONE), &rig);
-    let mut found = vec![cell.first(&mut state, forces_n[0])];
+    let cell = SensorHysteresis::new(Parameters { w: half_width_n }).expect("within bounds");
+    let mut state = cell.start(&Motion::default(), &Rig::default());
+    let mut first_n = forces_n[0];
+    cell.first_reading(&mut state, &mut first_n);
+    let mut readings_n = vec![first_n];
     for &force in &forces_n[1..] {
-        found.push(cell.step(&mut state, smooth(force), T::ZERO, T::ONE).now_n);
+        let mut signal = smooth(force);
+        cell.reading(&mut state, &mut signal, T::ZERO, T::ONE);
+        readings_n.push(signal.now_n);
     }
-    found
+    readings_n
 }
 
 /// The test motion has a speed that rises, falls below zero and rises again, with viscous friction.

@@ -3,13 +3,14 @@
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings, LOAD_N};
-use jbf_core::effect::sensor_nonlinearity::SensorNonlinearity;
-use jbf_core::effect::{Effect, Instrument, Rig, Signal};
-use jbf_core::{Dual, Motion, Real};
+use jbf_core::effect::sensor_nonlinearity::{Parameters, SensorNonlinearity};
+use jbf_core::effect::{Effect, Signal};
+use jbf_core::{Dual, Real};
 
-fn read<T: Real>(cubic_1_n2: T, force_n: T) -> T {
-    let cell = SensorNonlinearity::new(&[cubic_1_n2]).expect("within bounds");
-    cell.first(&mut (), force_n)
+fn read<T: Real>(cubic_1_n2: T, mut force_n: T) -> T {
+    let cell = SensorNonlinearity::new(Parameters { c: cubic_1_n2 }).expect("within bounds");
+    cell.first_reading(&mut (), &mut force_n);
+    force_n
 }
 
 #[test]
@@ -95,20 +96,15 @@ fn derivatives_are_those_of_the_characteristic_on_both_sides_of_its_turning_poin
 /// The force at each instant within a step is transformed separately.
 #[test]
 fn nonlinearity_transforms_each_instant_of_a_step_separately() {
-    let cell = SensorNonlinearity::new(&[0.01]).expect("within bounds");
-    let rig = Rig {
-        radius_m: 1.0,
-        count: 1.0,
-    };
-    cell.start(&Motion::at_rest(1.0), &rig);
-    let signal = Signal {
+    let cell = SensorNonlinearity::new(Parameters { c: 0.01 }).expect("within bounds");
+    let mut signal = Signal {
         begin_n: 1.0,
         end_n: -2.0,
         now_n: 3.0,
     };
-    let bent = cell.step(&mut (), signal, 5.0, 0.1);
+    cell.reading(&mut (), &mut signal, 5.0, 0.1);
     assert_eq!(
-        bent,
+        signal,
         Signal {
             begin_n: 1.01,
             end_n: -2.08,

@@ -44,6 +44,6 @@ fn holding_level_at_rest_is_unchanged() {
         &[("stribeck_asymmetry", &[2.0, 0.03, 1.0])],
     );
     let state = chain.start(&held::<f64>(0.4, 0.0));
-    assert_eq!(chain.felt(&state).jump, F_C_N);
+    assert_eq!(chain.reaction_n(&state).jump, F_C_N);
     assert_eq!(state.reading_n, 0.0);
 }

@@ -52,7 +52,7 @@ fn dry_level_depends_on_the_position_but_viscous_friction_does_not() {
 fn level_n(a: [f64; 6], x: f64) -> f64 {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("stroke_dependence", &values(a))]);
     let state = chain.start(&held::<f64>(x / Bearing::THESIS.radius_m, 0.0));
-    chain.felt(&state).jump
+    chain.reaction_n(&state).jump
 }
 
 /// The terms have zero mean and are orthogonal to each other over the stroke.

@@ -55,7 +55,7 @@ fn holding_level_at_rest_grows_with_the_transmitted_force() {
         let chain = chain_round(newtons(F_C_N, 0.0), &effects);
         let state = chain.start(&held::<f64>(2.0, 0.0));
         let weight = WEIGHT[0] * (2.0 - WEIGHT[1]).sin();
-        let felt = chain.felt(&state);
+        let felt = chain.reaction_n(&state);
         assert!((felt.jump - (F_C_N + share * weight)).abs() < 1e-12);
         assert!((felt.smooth - weight).abs() < 1e-12);
     }

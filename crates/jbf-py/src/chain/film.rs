@@ -8,9 +8,9 @@
 use super::Chain;
 use crate::film_paths::{Film, FilmPath, Steps};
 use crate::motion::Motion;
+use jbf_batch::film_path::{FilmStep, FilmSteps, Place};
 use jbf_batch::{film_paths, Simd};
 use jbf_core::effect::Stage;
-use jbf_core::film_path::{FilmStep, FilmSteps, Place};
 use jbf_core::law::journal::Journal;
 use jbf_core::law::{Law, Named};
 use jbf_core::spec::Using;
@@ -149,7 +149,7 @@ fn joined(lanes: &[Vec<f64>], apart: [f64; 2]) -> Vec<Place> {
 /// Integration steps of a film along a motion with inner steps of at most `inner_s`.
 fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     let every = RefCell::new(Vec::with_capacity(motion.len() * 9 / 8));
-    let asks = jbf_core::Chain::round(FilmSteps::new(|s| every.borrow_mut().push(s)), (), None);
+    let asks = jbf_core::Chain::new(FilmSteps::new(|s| every.borrow_mut().push(s)));
     let mut ends = Vec::with_capacity(motion.len());
     let mut before = 0;
     run::predict(&asks, &motion.record(), inner_s, |i, _| {

@@ -30,12 +30,12 @@ impl ModelSpec {
             Some(sizes) => Some(sizes.clone().checked()?),
             None => None,
         };
-        let lift = |values: &[f64]| values.iter().map(|&v| T::of(v)).collect::<Vec<T>>();
+        let cast = |values: &[f64]| values.iter().map(|&v| T::of(v)).collect::<Vec<T>>();
         let effects = self.effects.iter();
-        let effects = effects.map(|(name, values)| (name.as_str(), lift(values)));
+        let effects = effects.map(|(name, values)| (name.as_str(), cast(values)));
         let spec = Spec {
             law: &self.law,
-            values: &lift(&self.parameters),
+            values: &cast(&self.parameters),
             bearing: bearing.as_ref(),
             load_n: Some(self.load_n),
             clock,

@@ -5,7 +5,7 @@ use super::running::{boxed, Stepping};
 use super::settings::LoopSpec;
 use crate::bearing::refused;
 use core::marker::PhantomData;
-use jbf_core::compensator::carried::Whole;
+use jbf_core::compensator::model::ChainModel;
 use jbf_core::compensator::observed::{Learned, Observed, Settings};
 use jbf_core::law::Named;
 use jbf_core::{Chain, Real};
@@ -58,7 +58,7 @@ impl<T: Real> Using<T> for Carry<'_, T> {
     fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output {
         let s = self.spec;
         let volts_per_n = self.settings.drive.drive().volts_per_n;
-        let model = Whole::new(chain, volts_per_n, s.model.load_n);
+        let model = ChainModel::new(chain, volts_per_n, s.model.load_n);
         let compensator = Observed::new(model, &s.settings.beside(self.settings))
             .map_err(refused)?
             .resumed(Learned {

@@ -29,7 +29,7 @@ where
         };
         self.controller
             .step(&mut self.state, counter, &target)
-            .lift()
+            .cast()
     }
 }
 

@@ -56,7 +56,7 @@ impl LoopSpec {
         if let Some(patience_s) = self.patience_s {
             limits = limits.with_patience_s(patience_s);
         }
-        let law = self.law().lift();
+        let law = self.law().cast();
         Controller::new(encoder, observer, law, compensator, limits, self.dt_s).map_err(refused)
     }
 

@@ -77,20 +77,20 @@ impl<T: Real> Learning<T> {
     /// values.
     pub fn new(law: Journal<T>, s: &Settings) -> Result<Self, Error> {
         s.check(law.k0.value())?;
-        let lift = |l: Learned<f64>| Learned {
+        let cast = |l: Learned<f64>| Learned {
             k0: T::of(l.k0),
             gamma: T::of(l.gamma),
         };
         Ok(Self {
             law,
-            rule: s.rule.lift(),
-            gain: lift(s.gain),
+            rule: s.rule.cast(),
+            gain: cast(s.gain),
             begin: Learned {
                 k0: law.k0,
                 gamma: T::of(s.gamma),
             },
-            least: lift(s.least),
-            most: lift(s.most),
+            least: cast(s.least),
+            most: cast(s.most),
             inverse_gamma: T::of(1.0 / s.gamma),
             radius_m: T::of(s.radius_m),
             volts: T::of(s.volts),

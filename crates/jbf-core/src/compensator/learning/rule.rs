@@ -42,7 +42,7 @@ impl Rule<f64> {
         }
     }
 
-    pub(super) fn lift<T: Real>(&self) -> Rule<T> {
+    pub(super) fn cast<T: Real>(&self) -> Rule<T> {
         match *self {
             Self::Velocity => Rule::Velocity,
             Self::Position { gate_rad, clip_rad } => Rule::Position {

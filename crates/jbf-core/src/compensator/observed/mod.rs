@@ -39,7 +39,7 @@ mod settings;
 
 pub use settings::Settings;
 
-use super::carried::Carried;
+use super::model::FrictionModel;
 use super::{Answer, Compensator, Sense};
 use crate::error::{check, Error};
 use crate::friction::Friction;
@@ -111,7 +111,7 @@ pub struct State<T, S> {
     pub learned: Learned<T>,
 }
 
-impl<T: Real, M: Carried<T>> Observed<T, M> {
+impl<T: Real, M: FrictionModel<T>> Observed<T, M> {
     /// Creates a compensator from a friction model and settings.
     ///
     /// # Errors
@@ -224,7 +224,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     }
 }
 
-impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
+impl<T: Real, M: FrictionModel<T>> Compensator<T> for Observed<T, M> {
     type State = State<T, M::State>;
 
     fn start(&self) -> Self::State {

@@ -13,6 +13,20 @@
 //!
 //! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
 //! chapter 3.
+//!
+//! ```
+//! use jbf_core::law::journal::Journal;
+//! use jbf_core::law::journal::Parameters;
+//! use jbf_core::{Bearing, Chain, Clock, Motion};
+//!
+//! let bearing = Bearing::THESIS;
+//! let law = Journal::new(&bearing, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
+//! let chain = Chain::new(law).on(&bearing);
+//! let mut state = chain.start(&Motion::at_rest(104.0));
+//! let force_n = chain.step_velocity(&mut state, 0.02, 0.002);
+//! assert!(force_n > 0.0 && force_n < 0.3 * 104.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
 mod build;
 pub(crate) mod film_linear;
@@ -25,7 +39,8 @@ mod state;
 mod stribeck;
 
 pub(in crate::law) use named::parts;
-pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
+pub use parameters::{k0_from_original, Parameters};
+pub(in crate::law) use parameters::{PARAMETERS, SUMMARY};
 pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 

@@ -9,6 +9,7 @@ use crate::real::Real;
 
 impl<T: Real> Named<T> for Journal<T> {
     const INFO: Info = Info::new::<T, Self>("journal")
+        .rust_type("Journal")
         .summary(SUMMARY)
         .equation(
             "eps', phi' of the film; f = [f_m W sgn(U) + gamma (C R/L^2) 2 pi Ub / \

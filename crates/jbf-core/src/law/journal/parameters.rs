@@ -1,65 +1,29 @@
 //! Parameters of the journal law: their descriptions, the values in the tables of Cohn (1998), and
 //! the original form (3.15) of the asperity stiffness.
 
+#[cfg(doc)]
+use super::Journal;
 use crate::error::{check, positive, ParameterError};
-use crate::page::{Bound, Parameter};
+use crate::page::{described, Bound};
 
 /// Physical meaning of the journal law for the catalogue, in one line.
-pub const SUMMARY: &str =
+pub(in crate::law) const SUMMARY: &str =
     "hydrodynamic journal bearing, boundary to full film (reduced Harnoy-Friedland model)";
 
-/// Descriptions of [`Parameters`], in the order of their values.
-pub const PARAMETERS: &[Parameter] = &[
-    Parameter::new(
-        "f_m",
-        "-",
-        "maximum friction coefficient of the asperities",
-        [1e-4, 10.0],
-        &[0.25],
-    )
-    .log(),
-    Parameter::new(
-        "U_tr_m_s",
-        "m/s",
-        "transition speed from mixed to full film",
-        [1e-5, 1e2],
-        &[0.055],
-    )
-    .log()
-    .bound(Bound::TransitionSpeed),
-    Parameter::new(
-        "K0",
-        "-",
-        "asperity stiffness constant",
-        [1.0, 1e9],
-        &[6.5e5],
-    )
-    .log(),
-    Parameter::new(
-        "gamma",
-        "-",
-        "slope factor of the viscous term",
-        [1e-3, 1e5],
-        &[33.0],
-    )
-    .log(),
-];
+described! {
+    parameters Journal;
+    f_m = "f_m", "-", "maximum friction coefficient of the asperities",
+        [1e-4, 10.0], [0.25] .log();
+    u_tr_m_s = "U_tr_m_s", "m/s", "transition speed from mixed to full film",
+        [1e-5, 1e2], [0.055] .log().bound(Bound::TransitionSpeed);
+    k0 = "K0", "-", "asperity stiffness constant",
+        [1.0, 1e9], [6.5e5] .log();
+    gamma = "gamma", "-", "slope factor of the viscous term",
+        [1e-3, 1e5], [33.0] .log();
+}
 
 /// Indices of the parameters `U_tr_m_s` and `K0`, which affect the film.
 pub(in crate::law) const FILM_PARAMETERS: [usize; 2] = [1, 2];
-
-/// Parameters of the journal law.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters<T> {
-    /// Largest friction coefficient of the asperities, -.
-    pub f_m: T,
-    /// Transition speed from mixed to full film, m/s.
-    pub u_tr_m_s: T,
-    /// Asperity stiffness constant, -, equation (3.16) of Cohn (1998).
-    pub k0: T,
-    /// Slope factor of the viscous term, -, equation (3.14) of Cohn (1998).
-    pub gamma: T,
-}
 
 impl Parameters<f64> {
     /// Values of Table 4.2 of Cohn (1998): motion in both directions and Stribeck curve at 104 N.

@@ -31,6 +31,20 @@
 //!
 //! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
 //! chapter 3.
+//!
+//! ```
+//! use jbf_core::law::journal_full::JournalFull;
+//! use jbf_core::law::journal::Parameters;
+//! use jbf_core::{Bearing, Chain, Clock, Motion};
+//!
+//! let bearing = Bearing::THESIS;
+//! let law = JournalFull::new(&bearing, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
+//! let chain = Chain::new(law).on(&bearing);
+//! let mut state = chain.start(&Motion::at_rest(104.0));
+//! let force_n = chain.step_velocity(&mut state, 0.02, 0.002);
+//! assert!(force_n > 0.0 && force_n < 0.3 * 104.0);
+//! # Ok::<(), jbf_core::Error>(())
+//! ```
 
 mod build;
 pub mod motion;

@@ -10,6 +10,7 @@ use crate::real::Real;
 
 impl<T: Real> Named<T> for JournalFull<T> {
     const INFO: Info = Info::new::<T, Self>("journal_full")
+        .rust_type("JournalFull")
         .summary("hydrodynamic journal bearing with the inertia of the shaft (four states)")
         .equation("mb eps'' and mb eps phi'' of the film, (3.7) and (3.8); f as in journal")
         .source("Harnoy & Friedland 1994; Cohn 1998, equations (3.7), (3.8), (3.14)")

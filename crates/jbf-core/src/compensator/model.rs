@@ -4,14 +4,14 @@
 //! into the part with the sign of the motion and the remaining part.
 
 use crate::chain::{self, Chain};
-use crate::effect::{EffectSet, Effects};
+use crate::effect::{Effect, Effects};
 use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
 
 /// Friction model that a compensator evaluates in a control loop.
-pub trait Carried<T: Real> {
+pub trait FrictionModel<T: Real> {
     /// State of the model.
     type State: Copy;
 
@@ -21,7 +21,7 @@ pub trait Carried<T: Real> {
     /// Advances the state by `dt_s` to a speed (rad/s) and an angle (rad).
     fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T);
 
-    /// Returns the friction at the speed of the last [`Carried::advance`], V.
+    /// Returns the friction at the speed of the last [`FrictionModel::advance`], V.
     fn friction(&self, state: &Self::State) -> Friction<T>;
 
     /// Returns the slope of [`Friction::smooth`] between rest and a speed (rad/s, not zero), V
@@ -41,7 +41,7 @@ pub trait Carried<T: Real> {
 /// A bristle of the law is assumed to slide at once.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
-pub struct Bare<T, L> {
+pub struct LawModel<T, L> {
     /// The friction law.
     pub law: L,
     /// Journal radius, m.
@@ -52,7 +52,7 @@ pub struct Bare<T, L> {
     pub load_n: T,
 }
 
-impl<T: Real, L> Bare<T, L> {
+impl<T: Real, L> LawModel<T, L> {
     /// Creates a model from a law, the journal radius (m), the voltage per newton of friction on
     /// one bearing (V/N) and the load (N).
     #[must_use]
@@ -73,7 +73,7 @@ pub struct Moving<T, S> {
     velocity_m_s: T,
 }
 
-impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
+impl<T: Real, L: Law<T>> FrictionModel<T> for LawModel<T, L> {
     type State = Moving<T, L::State>;
 
     fn start(&self) -> Self::State {
@@ -113,7 +113,7 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
 /// Friction model that is a chain: a law with the effects of a fitted model.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
-pub struct Whole<T: Real, L, E = Effects<T>> {
+pub struct ChainModel<T: Real, L, E = Effects<T>> {
     /// Law with its effects.
     pub chain: Chain<T, L, E>,
     /// Voltage that corresponds to one newton of friction on one bearing, V/N.
@@ -122,7 +122,7 @@ pub struct Whole<T: Real, L, E = Effects<T>> {
     pub load_n: T,
 }
 
-impl<T: Real, L, E> Whole<T, L, E> {
+impl<T: Real, L, E> ChainModel<T, L, E> {
     /// Creates a model from a chain, the voltage per newton of friction on one bearing (V/N) and
     /// the load (N).
     #[must_use]
@@ -135,7 +135,7 @@ impl<T: Real, L, E> Whole<T, L, E> {
     }
 }
 
-impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
+impl<T: Real, L: Law<T>, E: Effect<T>> FrictionModel<T> for ChainModel<T, L, E> {
     type State = chain::State<T, L::State, E>;
 
     fn start(&self) -> Self::State {
@@ -160,7 +160,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
 
     #[inline]
     fn friction(&self, state: &Self::State) -> Friction<T> {
-        self.chain.felt(state).times(self.volts_per_n)
+        self.chain.reaction_n(state).times(self.volts_per_n)
     }
 
     #[inline]

@@ -8,10 +8,9 @@
 //! law whose film takes its states from a list. With the states that belong to its parameters, the
 //! results are identical bit for bit to an integration.
 
-use crate::friction::Friction;
-use crate::law::Law;
-use crate::motion::JournalMotion;
-use crate::real::Real;
+use jbf_core::law::Law;
+use jbf_core::motion::JournalMotion;
+use jbf_core::{Friction, Real};
 
 /// State of the film at the end of a step, with its derivatives with respect to the two film
 /// parameters of the law.
@@ -102,7 +101,7 @@ impl<'a, T, L> OnPath<'a, T, L> {
     }
 
     /// Sets the index in the path of the last step before each sample except the first, for
-    /// [`crate::run::Steps::Last`].
+    /// [`jbf_core::run::Steps::Last`].
     pub fn at(self, ends: &'a [u32]) -> Self {
         Self {
             ends: Some(ends),

@@ -1,11 +1,12 @@
 //! Tests that a chain on the stored path of a film has the same readings, bit for bit, as one that
 //! integrates the film.
 
+#[path = "../../jbf-core/tests/common/mod.rs"]
 mod common;
 
 use common::motion::Sines;
-use jbf_core::effect::{EffectSet, Effects, CATALOGUE};
-use jbf_core::film_path::{FilmStep, FilmSteps, OnPath, Place};
+use jbf_batch::film_path::{FilmStep, FilmSteps, OnPath, Place};
+use jbf_core::effect::{Effect, Effects, CATALOGUE};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::Law;
 use jbf_core::run::{inner_step_s, predict, predict_by, Record, Steps};
@@ -43,7 +44,7 @@ fn with<T: Real, L: Law<T>>(law: L, named: &[(&str, &[f64])]) -> Chain<T, L, Eff
         let lifted: Vec<T> = values.iter().map(|&v| T::of(v)).collect();
         effects.set(name, &lifted).expect("valid");
     }
-    Chain::round(law, effects, Some(&Bearing::THESIS))
+    Chain::new(law).with_effects(effects).on(&Bearing::THESIS)
 }
 
 /// Columns of a motion in both directions with uneven sampling intervals, some so long that inner
@@ -99,7 +100,7 @@ fn path_and_ends<const N: usize>(
     inner_s: f64,
 ) -> (Vec<Place>, Vec<u32>) {
     let asked: RefCell<Vec<FilmStep>> = RefCell::new(Vec::new());
-    let asks = Chain::round(FilmSteps::new(|s| asked.borrow_mut().push(s)), (), None);
+    let asks = Chain::new(FilmSteps::new(|s| asked.borrow_mut().push(s)));
     let mut ends = Vec::new();
     predict(&asks, record, inner_s, |i, _| {
         if i > 0 {
@@ -176,7 +177,7 @@ fn last_step_before_each_sample_suffices_for_effects_without_memory() {
         let start: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         let stepped = with(on_path(), &[(info.name, &start)]);
         let before_film = inner_step_s(&stepped, &record, MAX_STEP_S) != inner_s;
-        if before_film || stepped.effects.remembers() {
+        if before_film || stepped.effects.has_memory() {
             continue;
         }
         told += 1;
@@ -194,7 +195,7 @@ fn last_step_before_each_sample_suffices_for_effects_without_memory() {
         );
     }
     assert!(told > 15, "{told}");
-    let remembers = |name, start: &[f64]| with(on_path(), &[(name, start)]).effects.remembers();
+    let remembers = |name, start: &[f64]| with(on_path(), &[(name, start)]).effects.has_memory();
     assert!(remembers("sensor_lag", &[0.05]) && remembers("presliding", &[2e4]));
     assert!(!remembers("coulomb_drag", &[1.0]) && !remembers("sensor_offset", &[0.1]));
 }

@@ -7,15 +7,20 @@ import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 
+import numpy as np
+import numpy.typing as npt
+
 from jbf import _core
 from jbf.errors import InputError
 from jbf.export.joint_elements import Elements, JointForm
 from jbf.export.joint_form import joint_form
 from jbf.export.ledger import Term
+from jbf.export.mujoco_run import installed_version, run_mujoco
 from jbf.export.reference import Reference
 from jbf.export.target import MAIN, Settings, Target, Written, xml_text
 from jbf.models.model import Model
 
+Array = npt.NDArray[np.float64]
 DCMOTOR = (3, 7, 0)
 """First version with `dcmotor` and with polynomial damping."""
 PASSIVE_DCMOTOR = (4, 0, 0)
@@ -47,9 +52,10 @@ SHORTED = {"motorconst": "1e-6", "resistance": "1e6"}
 
 def version_of(text: str) -> tuple[int, ...]:
     """Parse a version of MuJoCo, such as `3.7.0`."""
-    if not re.fullmatch(r"\d+(\.\d+){0,2}", text):
+    found = re.match(r"\d+(\.\d+){0,2}(?!\w)", text)
+    if found is None:
         raise InputError(problem=f'"{text}" is not a version of MuJoCo', remedy="write it as 4.0.0")
-    parts = [int(part) for part in text.split(".")]
+    parts = [int(part) for part in found[0].split(".")]
     return tuple(parts + [0] * (3 - len(parts)))
 
 
@@ -80,14 +86,26 @@ def write_mjcf(reference: Reference, settings: Settings) -> Written:
     for section in sections[1:]:
         test.append(section)
     files = {MAIN: xml_text(include), "_test.xml": xml_text(test)}
-    force = form.force(reference)
+    force, evaluated_by = _force(form, files["_test.xml"], version, reference)
     return Written(
         files,
         _terms(terms, form, model),
         force,
-        "jbf, same equations",
+        evaluated_by,
         _notes(form, version, kind == "hinge"),
     )
+
+
+def _force(
+    form: JointForm, test_model: str, version: tuple[int, ...], reference: Reference
+) -> tuple[list[Array], str]:
+    """Force of the elements along the runs: in MuJoCo if it is installed and new enough."""
+    installed = installed_version()
+    if installed is not None and version_of(installed) >= version:
+        force = run_mujoco(test_model, TIMESTEP_S, reference)
+        if force is not None:
+            return force, f"MuJoCo {installed}, time step {1e3 * TIMESTEP_S:g} ms"
+    return form.force(reference), "jbf, same equations"
 
 
 def _class(joint: str) -> str:

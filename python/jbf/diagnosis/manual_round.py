@@ -19,6 +19,7 @@ from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, fit
 from jbf.estimation.transients import without_further_transients, without_transients
+from jbf.models.chain import default_law
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -53,7 +54,7 @@ def manual_round(
     runs: Sequence[Run],
     effects: Sequence[str] = (),
     *,
-    law: str = "journal",
+    law: str | None = None,
     clock: Clock = "journal",
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
@@ -68,7 +69,8 @@ def manual_round(
     effects
         Effects of the model.
     law, clock
-        Base law, and the definition of the time constant of its film.
+        Base law (by default `journal` for a bearing and `coulomb` for a drive), and the definition
+        of the time constant of its film.
     policy
         Thresholds and settings of the tests.
     progress
@@ -88,6 +90,7 @@ def manual_round(
     ManualRound
         The fit, the candidates tried, the comparison with the records, and the detection limits.
     """
+    law = default_law(rig) if law is None else law
     if progress is not None:
         progress("fitting", 0, 0)
     # Use the model of `fit`, so that the user can reproduce the step.

@@ -46,7 +46,7 @@ from jbf.estimation.initial_state import initial_memory
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock, find_law
-from jbf.models.chain import check_rig
+from jbf.models.chain import check_rig, default_law
 from jbf.models.vocabulary import AUTO, Clock
 from jbf.records.arguments import check_callable, list_of_runs, of_kind
 from jbf.records.rig import Rig
@@ -59,7 +59,7 @@ def diagnose(
     rig: Rig,
     runs: Sequence[Run],
     *,
-    law: str = "journal",
+    law: str | None = None,
     clock: Clock = "journal",
     limits: Limits | None = None,
     policy: Policy = DEFAULT,
@@ -79,7 +79,7 @@ def diagnose(
     law, clock
         Base law, and the definition of the time constant of its film (`journal` or `thesis`). The
         law `auto` selects, among the laws that the rig allows, the one with the smallest held-out
-        error without effects.
+        error without effects. The default is `journal` for a bearing and `coulomb` for a drive.
     limits
         Limits of the rig for the next experiment; by default those of the runs.
     policy
@@ -122,6 +122,7 @@ def diagnose(
     >>> diagnosis.verdict, diagnosis.effects
     ('adequate', ())
     """
+    law = default_law(rig) if law is None else law
     reached, time_limit = Reached(), TimeLimit.of(time_limit_s)
     try:
         return _diagnose(rig, runs, law, clock, limits, policy, progress, time_limit, reached)

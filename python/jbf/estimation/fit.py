@@ -28,7 +28,7 @@ from jbf.estimation.standard_errors import doubtful_errors, standard_errors
 from jbf.estimation.transients import check_film_rate
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
-from jbf.models.chain import check_rig
+from jbf.models.chain import check_rig, default_law
 from jbf.models.delayed_reading import TAU
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
@@ -245,7 +245,7 @@ def fit(
     runs: Sequence[Run],
     effects: Sequence[str] = (),
     *,
-    law: str = "journal",
+    law: str | None = None,
     clock: Clock = "journal",
     start: Mapping[str, float] | None = None,
     fixed: Mapping[str, float] | None = None,
@@ -267,7 +267,8 @@ def fit(
     effects
         Names of effects to fit in addition to the law.
     law, clock
-        Base law, and the definition of the time constant of its film (`journal` or `thesis`).
+        Base law, and the definition of the time constant of its film (`journal` or `thesis`). The
+        default law is `journal` for a bearing and `coulomb` for a drive.
     start, fixed
         Starting values, and values of parameters held fixed, by parameter name. Other starting
         values are those of the catalogue or, for a law in newtons, estimates from the data.
@@ -315,6 +316,7 @@ def fit(
     >>> round(fit.params["F_c"], 1)
     5.0
     """
+    law = default_law(rig) if law is None else law
     one_of(cov_type, get_args(CovType), "cov_type")
     limit = TimeLimit.of(time_limit_s)
     chosen = in_chain_order(effects)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from jbf import Diagnosis, Rig, Run, diagnose
+from jbf import Diagnosis, Rig, Run, diagnose, fit
 from jbf.records.drive import Drive
 
 COULOMB, VISCOUS, INERTIA, WEIGHT, NOISE = 0.12, 0.012, 0.009, 0.3, 0.012
@@ -70,6 +70,22 @@ def test_effect_is_named_in_addition_to_the_machine_terms_of_a_drive() -> None:
     assert found.effects == ("cogging",)
     assert set(found.machine) == {"inertia", "gravity"}
     assert_machine_is_found(found)
+
+
+def test_viscous_friction_that_differs_by_direction_is_named_without_an_offset() -> None:
+    """With an offset, friction that differs by direction in full gives the same predictions."""
+
+    def with_asymmetry(run: Run) -> Run:
+        return replace(run, friction=run.friction + 0.004 * np.abs(run.velocity))
+
+    found = diagnose(DRIVE, [with_asymmetry(run) for run in RUNS])
+    assert (found.verdict, found.effects) == ("missing", ("viscous_asymmetry",)), found.summary()
+    assert set(found.machine) == {"inertia", "gravity"}
+    assert_machine_is_found(found)
+
+
+def test_default_law_of_a_drive_is_coulomb_friction() -> None:
+    assert fit(DRIVE, RUNS[:1]).model.law == "coulomb"
 
 
 def test_machine_terms_without_influence_on_the_runs_are_omitted() -> None:

@@ -58,6 +58,8 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         (4753, "cogging"),
         # The delay of the force appears only when the effect is in the model.
         pytest.param(4735, "stribeck_excess", marks=pytest.mark.extended),
+        # With an offset, friction that differs by direction in full fits as well.
+        pytest.param(4771, "viscous_asymmetry", marks=pytest.mark.extended),
     ],
 )
 def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:

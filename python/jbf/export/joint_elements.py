@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares, nnls
 
 from jbf.export.reference import Reference, force_of_effects
 from jbf.models.model import Model
@@ -114,6 +113,8 @@ def with_polynomial(reference: Reference, form: JointForm) -> JointForm:
 
     The result is dissipative at every speed. A form without a dry level keeps none.
     """
+    from scipy.optimize import nnls  # a large part of the import time of jbf.export
+
     rest = replace(form, level=0.0, damping=(0.0, 0.0, 0.0)).force(reference)
     force = reference.pooled(a - b for a, b in zip(reference.force, rest, strict=True))
     v = reference.pooled(reference.velocity)
@@ -131,6 +132,8 @@ def fit_form(reference: Reference, form: JointForm, free: tuple[str, ...]) -> Jo
     Positive values are fitted by their logarithm; the damping and a value that starts at zero are
     fitted linearly.
     """
+    from scipy.optimize import least_squares
+
     size = reference.friction_rms
     unit = dict.fromkeys(free, size)
     unit["damping"] = size / reference.top_speed

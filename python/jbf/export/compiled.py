@@ -46,7 +46,7 @@ def run_c(
     compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if compiler is None:
         raise NoCompiler
-    with tempfile.TemporaryDirectory(prefix="jbf-export-") as name:
+    with tempfile.TemporaryDirectory(prefix="jbf-export-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         (folder / "model.c").write_text(source.replace(STEM, "model"), encoding="utf-8")
         (folder / "model.h").write_text(header, encoding="utf-8")

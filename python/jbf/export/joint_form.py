@@ -16,6 +16,7 @@ from jbf.errors import InputError
 from jbf.export.joint_elements import Elements, JointForm, fit_form, with_polynomial
 from jbf.export.ledger import Status, Term
 from jbf.export.reference import BODY, Reference, force_of_effects, instrument
+from jbf.models.catalogue import built_in
 from jbf.models.model import Model
 
 COGGING = ("cogging", "cogging_2")
@@ -86,7 +87,12 @@ def joint_form(reference: Reference, elements: Elements) -> tuple[JointForm, tup
     model = reference.model
     _check_rig(model)
     effects = set(model.effects)
-    fitted = [name for name in model.effects if name in _FITTED]
+    machine = set(model.effects) - set(instrument(model))
+    fitted = [
+        name
+        for name in model.effects
+        if name in _FITTED or (name in machine and name not in built_in())
+    ]
     if "quadratic_drag" in effects and not elements.polynomial:
         fitted.append("quadratic_drag")
     cogging = tuple(n for n in COGGING if n in effects) if elements.cogging else ()

@@ -99,14 +99,16 @@ def _check(model: Model, settings: Settings) -> None:
     if model.rig.bearing is not None or model.law not in LAWS:
         raise InputError(
             problem=f"the law {model.law} has no form in C without the core",
-            remedy=f"use jbf export --c, or one of {', '.join(LAWS)} on a rig with [drive]",
+            remedy=f"use a law of {', '.join(LAWS)} on a rig with [drive]; for a built-in law, "
+            "jbf export --c writes C for the core",
         )
     known = {*CONTACT, *OTHER, *TRANSMISSION, "presliding"}
     for name in model.effects:
         if name not in known:
             raise InputError(
                 problem=f"the effect {name} has no form in C without the core",
-                remedy="use jbf export --c, or fit without the effect",
+                remedy="fit without the effect; for a built-in effect, jbf export --c writes C for "
+                "the core",
             )
 
 

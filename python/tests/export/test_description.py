@@ -80,3 +80,17 @@ def test_mujoco_reads_the_dynamics_of_the_urdf(rig: jbf.Rig) -> None:
     assert loaded.dof_frictionloss[0] == 5.0
     damping = np.ravel(loaded.dof_damping)[0]
     assert damping == 2.0
+
+
+def test_mean_of_a_user_defined_effect_is_part_of_the_fitted_values() -> None:
+    k = jbf.Parameter("k", "N", "level", lower=0.0, upper=10.0, null=0.0, starts=(1.0,))
+    jbf.register_effect(
+        lambda velocity, k: k * np.tanh(velocity / 1e-3), parameters=[k], name="packing"
+    )
+    try:
+        model = jbf.Model(JOINT, "coulomb", ["packing"], COULOMB | {"packing.k": 1.5})
+        exported = export.to(model, "urdf", joint_runs())
+    finally:
+        jbf.forget_effect("packing")
+    assert read("urdf", exported)["friction"] == pytest.approx(6.5, rel=0.02)
+    assert exported.ledger.term("packing").status == "approximate"

@@ -71,7 +71,7 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
         assert_page_fits_the_window(page)
 
         open_tab(page, 2)
-        page.wait_for_selector("text=Data only")
+        page.wait_for_selector("#banner >> text=No model yet")
         open_tab(page, 3)
         press_by_keyboard(page, "fit-law")
         await_models(page, 1)

@@ -217,6 +217,31 @@ def test_edited_parameter_is_drawn_fixed_fitted_and_compared(
     page.click("[data-key=model-1]")
 
 
+SLOW = """() => {
+  const plain = window.fetch;
+  window.fetch = (address, options) => new Promise((done, failed) => {
+    const stop = () => failed(new DOMException("aborted", "AbortError"));
+    options?.signal?.addEventListener("abort", stop);
+    const slow = String(address).includes("/api/text");
+    setTimeout(() => plain(address, options).then(done, failed), slow ? 60000 : 0);
+  });
+}"""
+
+
+def test_request_that_takes_long_shows_progress_and_can_be_cancelled(
+    opened: tuple[Page, Messages],
+) -> None:
+    page, messages = opened
+    enter(page, 4)
+    page.evaluate(SLOW)
+    page.click("[data-key=get-model]")
+    page.wait_for_selector("#job progress")
+    page.click("[data-key=cancel-requests]")
+    page.wait_for_selector("#job progress", state="detached")
+    assert page.inner_text("#message") == "Cancelled."
+    assert messages.complaints == []
+
+
 DELAYED = """() => {
   const plain = window.fetch;
   window.fetch = async (...request) => {

@@ -15,17 +15,32 @@ async function answered(response) {
   throw new Error(words);
 }
 
+// Requests that are under way; the page is told when one takes longer than BUSY_AFTER_MS.
+const BUSY_AFTER_MS = 300, pending = new Set();
+let tell = () => {};
+export const onBusy = (told) => { tell = told; };
+export const cancelRequests = () => { for (const control of pending) control.abort(); };
+
+async function request(address, options) {
+  const control = new AbortController();
+  pending.add(control);
+  const timer = setTimeout(() => tell(true), BUSY_AFTER_MS);
+  try { return await answered(await fetch(address, { ...options, headers, signal: control.signal })); } finally {
+    clearTimeout(timer); pending.delete(control);
+    if (!pending.size) tell(false);
+  }
+}
+
 export async function get(name, parameters = {}) {
   const query = new URLSearchParams();
   for (const [key, value] of Object.entries(parameters)) {
     if (value !== null && value !== undefined) query.set(key, value);
   }
-  return (await answered(await fetch(`/api/${name}?${query}`, { headers }))).json();
+  return (await request(`/api/${name}?${query}`, {})).json();
 }
 
 export async function post(name, parameters = {}) {
-  const body = JSON.stringify(parameters);
-  return (await answered(await fetch(`/api/${name}`, { method: "POST", headers, body }))).json();
+  return (await request(`/api/${name}`, { method: "POST", body: JSON.stringify(parameters) })).json();
 }
 
 // `progress(share)` is called with the share that was sent.
@@ -47,7 +62,7 @@ export function upload(file, progress) {
 
 // A text as a file of the browser's own.
 export async function download(what, name) {
-  const response = await answered(await fetch(`/api/text?what=${what}`, { headers }));
+  const response = await request(`/api/text?what=${what}`, {});
   const link = document.createElement("a");
   link.href = URL.createObjectURL(await response.blob());
   link.download = name;

@@ -1,5 +1,5 @@
 // The page: its sections, the current selection, and news from the server.
-import { download, follow, get, post } from "./api.js";
+import { cancelRequests, download, follow, get, onBusy, post } from "./api.js";
 import { showBanner } from "./banner.js";
 import { h, put } from "./dom.js";
 import { DataSection } from "./data.js";
@@ -21,6 +21,7 @@ class Page {
     // Whether a recording is being imported.
     this.importing = false;
     document.addEventListener("keydown", (event) => this.key(event));
+    onBusy((busy) => { if (this.busy !== busy) { this.busy = busy; if (this.state) this.head(); } });
     startTheme(place("theme"), () => { if (this.section) this.enter(this.name); });
     if (innerWidth <= 1000) for (const id of ["runs-part", "models-part"]) place(id).open = false;
   }
@@ -68,7 +69,8 @@ class Page {
 
   head() {
     const { job, message } = this.state;
-    put(place("job"), job ? [
+    if (!job && this.busy) put(place("job"), [h("progress", { "aria-label": "progress" }), "Working …", h("button", { "data-key": "cancel-requests", onclick: cancelRequests }, "Cancel")]);
+    else put(place("job"), job ? [
       h("progress", { "aria-label": "progress", ...(job.total ? { value: job.done, max: job.total } : {}) }),
       `${job.words}: ${job.message}, ${job.elapsed_s.toFixed(0)} s`,
       h("button", { "data-key": "cancel", onclick: () => this.do("cancel") }, "Cancel"),
@@ -83,7 +85,7 @@ class Page {
 
   // Ask the server to do something; an error is shown.
   async do(name, asked = {}) {
-    try { this.say("", ""); return await post(name, asked); } catch (error) { this.say(error.message); return null; }
+    try { this.say("", ""); return await post(name, asked); } catch (error) { this.failed(error); return null; }
   }
 
   // Data for a plot of one run and model. An error is not shown if the session has changed meanwhile:
@@ -92,6 +94,7 @@ class Page {
     const version = ({ rig, current, runs }) => JSON.stringify([rig, current, runs.map((run) => run.file)]);
     const before = version(this.state);
     try { return await request(); } catch (error) {
+      if (error.name === "AbortError") return null;
       let now;
       try { now = await get("state"); } catch { now = null; }
       if (now && version(now) !== before) { this.update(now); return null; }
@@ -102,8 +105,10 @@ class Page {
 
   // A text as a file of the browser's own.
   async download(what, file) {
-    try { await download(what, file); } catch (error) { this.say(error.message); }
+    try { await download(what, file); } catch (error) { this.failed(error); }
   }
+
+  failed(error) { if (error.name === "AbortError") this.say("Cancelled.", "done"); else this.say(error.message); }
 
   // What is looked at has changed.
   look(changes) {

@@ -67,7 +67,8 @@ SUGGESTED = (
 def file_columns(path: Path) -> list[dict[str, Any]]:
     """Name, unit, kind, first values and shape of each column of a file, as in the file.
 
-    The shape is the course of the first rows, scaled to 0 to 1; None for a column of words.
+    The shape is the course of the first rows, scaled to 0 to 1 (`least` to `most`); None for a
+    column of words.
     """
     columns = []
     with open_source(path) as source:
@@ -81,22 +82,26 @@ def file_columns(path: Path) -> list[dict[str, Any]]:
                         "unit": column.unit or split_unit(column.name)[1],
                         "kind": column.kind,
                         "first": [_shown(value) for value in values[:FIRST]],
-                        "shape": _shape(values),
+                        **_course(values),
                     }
                 )
     return columns
 
 
-def _shape(values: Values) -> list[float | None] | None:
-    """Course of the values in at most `SHAPE` points, scaled to 0 to 1; None for words."""
+def _course(values: Values) -> dict[str, Any]:
+    """Course of the values in at most `SHAPE` points, scaled to 0 to 1, and its ends, as text.
+
+    The `shape` of a column of words is None.
+    """
     if values.dtype.kind not in "fiu" or not len(values):
-        return None
+        return {"shape": None}
     numbers = values[:: max(len(values) // SHAPE, 1)].astype(np.float64)
     finite = numbers[np.isfinite(numbers)]
     if not len(finite):
-        return None
+        return {"shape": None}
     low, size = finite.min(), float(np.ptp(finite)) or 1.0
-    return [round(float(v), 3) if np.isfinite(v) else None for v in (numbers - low) / size]
+    shape = [round(float(v), 3) if np.isfinite(v) else None for v in (numbers - low) / size]
+    return {"shape": shape, "least": _shown(low), "most": _shown(finite.max())}
 
 
 def _shown(value: Any) -> str:

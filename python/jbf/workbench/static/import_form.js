@@ -86,7 +86,7 @@ export class ImportForm {
         h("tbody", {}, found.columns.map((column) => this.row(column)))), this.formulas(), this.rig())),
       this.part("map-text", "Map as text (formulas, cuts, clocks)", text));
     if (answer?.curves) this.preview(answer);
-    else put(this.plots, h("h3", {}, "The columns, first rows"), h("div", { class: "cards" }, found.columns.filter((c) => c.shape).map((c) => h("figure", { class: "course" }, course(c.shape), h("figcaption", {}, `${c.name}${c.unit ? ` (${c.unit})` : ""}: ${c.first[0]} …`)))));
+    else put(this.plots, h("h3", {}, "The columns, first rows"), h("div", { class: "cards" }, found.columns.filter((c) => c.shape).map((c) => h("figure", { class: "course" }, course(c.shape), h("figcaption", {}, `${c.name}: ${c.least} to ${c.most}${c.unit && !c.name.includes(`[${c.unit}]`) ? ` ${c.unit}` : ""}`)))));
   }
 
   part(key, words, ...content) {
@@ -110,7 +110,7 @@ export class ImportForm {
     return h("section", { class: `card${point.kind === "joint" ? "" : " open"}`, "aria-label": point.title, "data-point": point.kind },
       h("div", { class: "top" }, h("h3", {}, point.title), column ? course(column.shape) : null),
       column ? h("p", { class: "faint" }, `first values: ${column.first.join(", ")}`) : null,
-      point.choices.length === 0 ? h("label", {}, point.example ? `such as ${point.example} ` : "number ", field(point.example ?? "", point.title))
+      point.choices.length === 0 ? h("label", {}, point.example ? `such as ${point.example} ` : "number ", field("value", point.title))
         : many ? h("select", { "aria-label": point.title, "data-key": name, onchange: (e) => set(e.target.value) }, h("option", { value: "" }, "choose …"), point.choices.map(([value, words]) => h("option", { value, selected: value === point.chosen }, words)))
           : h("div", { class: "choices" }, point.choices.map(([value, words]) => h("button", { "data-key": `${name}-${value}`, "aria-pressed": String(value === point.chosen), onclick: () => set(value) }, words))),
       point.key === "time_s" && point.kind === "column" ? h("p", {}, h("label", {}, "or constant rate, Hz ", h("input", { class: "short", type: "number", "aria-label": "sampling rate, Hz", "data-key": "answer-rate", onchange: (e) => this.reply({ kind: "rate" }, Number(e.target.value)) }))) : null);
@@ -187,5 +187,5 @@ export class ImportForm {
 function course(shape) {
   if (!shape) return null;
   const points = shape.map((v, i) => (v === null ? null : `${(1 + 90 * i / Math.max(shape.length - 1, 1)).toFixed(1)},${(39 - 36 * v).toFixed(1)}`)).filter(Boolean).join(" ");
-  return s("svg", { class: "sketch", viewBox: "0 0 92 42", "aria-hidden": "true" }, s("polyline", { points, fill: "none", stroke: "var(--measured)", "stroke-width": 1.4 }));
+  return s("svg", { class: "sketch", viewBox: "0 0 92 42", preserveAspectRatio: "none", "aria-hidden": "true" }, s("polyline", { points, fill: "none", stroke: "var(--measured)", "stroke-width": 1.4, "vector-effect": "non-scaling-stroke" }));
 }

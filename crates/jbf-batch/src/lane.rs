@@ -5,8 +5,9 @@
 //! bits. The square root of `libm` is assembly code for one number at a time.
 
 use core::cmp::Ordering;
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use jbf_core::Real;
+use num_traits::{One, Zero};
 
 /// Number in one lane of a vector register.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,13 +82,31 @@ macro_rules! assigning {
     )*};
 }
 
-assigning!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *);
+assigning!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
 
 impl<F: Float> Neg for Lane<F> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Self(-self.0)
+    }
+}
+
+impl<F: Float> Zero for Lane<F> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self(F::ZERO)
+    }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.0.is_zero()
+    }
+}
+
+impl<F: Float> One for Lane<F> {
+    #[inline(always)]
+    fn one() -> Self {
+        Self(F::ONE)
     }
 }
 

@@ -6,7 +6,8 @@
 
 use crate::real::Real;
 use core::cmp::Ordering;
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use num_traits::{One, Zero};
 
 /// A value with its derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug)]
@@ -139,6 +140,31 @@ impl<const N: usize> MulAssign for Dual<N> {
     #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
+    }
+}
+
+impl<const N: usize> DivAssign for Dual<N> {
+    #[inline(always)]
+    fn div_assign(&mut self, other: Self) {
+        *self = *self / other;
+    }
+}
+
+impl<const N: usize> Zero for Dual<N> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    /// Returns true if the value and all derivatives are zero.
+    fn is_zero(&self) -> bool {
+        self.value == 0.0 && self.slope == [0.0; N]
+    }
+}
+
+impl<const N: usize> One for Dual<N> {
+    #[inline(always)]
+    fn one() -> Self {
+        Self::ONE
     }
 }
 

@@ -57,4 +57,5 @@ pub use dual::Dual;
 pub use error::{Error, ParameterError};
 pub use friction::Friction;
 pub use motion::Motion;
+pub use nalgebra;
 pub use real::Real;

@@ -5,7 +5,8 @@
 //! input gives the same bits on a laptop and on a microcontroller.
 
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use num_traits::{One, Zero};
 
 /// Prevents other crates from implementing [`Real`], so that an additional operation does not break
 /// their code.
@@ -17,6 +18,8 @@ pub mod sealed {
 /// Real number type with which the models can be evaluated.
 ///
 /// The trait is sealed: `f32`, `f64`, [`crate::Dual`], and the lanes of `jbf-batch` implement it.
+/// Vectors and matrices of nalgebra may hold any of these types; sums, products and quotients with
+/// a number are then available, decompositions only for `f32` and `f64`.
 ///
 /// Comparisons use the value alone; a derivative never decides a branch.
 pub trait Real:
@@ -33,6 +36,9 @@ pub trait Real:
     + AddAssign
     + SubAssign
     + MulAssign
+    + DivAssign
+    + Zero
+    + One
     + Send
     + Sync
     + 'static

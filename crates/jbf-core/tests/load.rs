@@ -19,8 +19,8 @@ fn friction_after_a_change_of_load_is_that_of_the_new_load() {
     }
     heavy.set_load(&mut state, 83.5);
     assert_eq!(state.eps_tr(), light.nominal().eps_tr);
-    let [x, y] = state.xy();
-    let mut own = State::at(x.hypot(y), y.atan2(x), light.nominal());
+    let xy = state.xy();
+    let mut own = State::at(xy.norm(), xy.y.atan2(xy.x), light.nominal());
     for i in 500..1500 {
         heavy.advance_with(&Rk4, &mut state, [speed(i); 3], 1.0, 0.002);
         light.advance_with(&Rk4, &mut own, [speed(i); 3], 1.0, 0.002);

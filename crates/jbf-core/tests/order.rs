@@ -17,9 +17,10 @@ use jbf_core::law::journal::State;
 use jbf_core::law::journal_full::{self, JournalFull};
 use jbf_core::stepper::{Rodas3, Rodas5P, StiffStepper};
 use jbf_core::{Bearing, Clock};
+use nalgebra::Vector2;
 
 /// State of the film without inertia after a motion of `0.03 + swing sin(4 t)` m/s.
-fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
+fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> Vector2<f64> {
     let law = law::<f64>(Clock::Journal);
     // Away from its steady state, so that it also moves at a steady speed.
     let steady = law.steady(0.025).expect("a speed");
@@ -32,7 +33,7 @@ fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
 }
 
 /// State of the film with inertia after a motion of `0.03 + swing sin(4 t)` m/s.
-fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
+fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> Vector2<f64> {
     let law = JournalFull::<f64>::new(&Bearing::THESIS, LOAD_N, &table_4_2(), Clock::Journal)
         .expect("valid");
     let steady = law.reduced().steady(0.025).expect("a speed");
@@ -59,11 +60,8 @@ fn steps(step_s: f64, swing: f64, mut advance: impl FnMut([f64; 3], f64)) {
     }
 }
 
-fn order(step_s: f64, end: impl Fn(f64) -> [f64; 2], exact: [f64; 2]) -> f64 {
-    let error = |h: f64| {
-        let [x, y] = end(h);
-        (x - exact[0]).hypot(y - exact[1])
-    };
+fn order(step_s: f64, end: impl Fn(f64) -> Vector2<f64>, exact: Vector2<f64>) -> f64 {
+    let error = |h: f64| (end(h) - exact).norm();
     (error(step_s) / error(step_s / 2.0)).log2()
 }
 

@@ -12,6 +12,7 @@ use jbf_core::law::journal::State;
 use jbf_core::law::Law;
 use jbf_core::stepper::{Euler, Rk4, Stepper};
 use jbf_core::{Clock, Real};
+use nalgebra::Vector2;
 
 const AMPLITUDE_M_S: f64 = 0.127;
 const LOOP_STEP_S: f64 = 0.002;
@@ -180,7 +181,7 @@ fn euler_error_is_within_its_theoretical_bound() {
 /// asperity load has a kink.
 #[test]
 fn euler_and_runge_kutta_have_their_order_on_a_smooth_motion() {
-    fn ends(stepper: &impl Stepper, step_s: f64) -> [f64; 2] {
+    fn ends(stepper: &impl Stepper, step_s: f64) -> Vector2<f64> {
         let law = law::<f64>(Clock::Journal);
         let steady = law.steady(0.03).expect("a speed");
         let mut state = State::at(steady.eps, steady.phi_rad, law.nominal());
@@ -191,10 +192,7 @@ fn euler_and_runge_kutta_have_their_order_on_a_smooth_motion() {
     }
     fn order(stepper: &impl Stepper, step_s: f64) -> f64 {
         let exact = ends(&Rk4, 1e-4);
-        let error = |h| {
-            let [x, y] = ends(stepper, h);
-            (x - exact[0]).hypot(y - exact[1])
-        };
+        let error = |h| (ends(stepper, h) - exact).norm();
         (error(step_s) / error(step_s / 2.0)).log2()
     }
     for step_s in [4e-3, 2e-3] {

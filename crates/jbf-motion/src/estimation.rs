@@ -276,7 +276,7 @@ fn factor<const N: usize>(disturbance: &[f64], intensity: f64) -> f64 {
 /// recurrence.
 fn gamma_of_half(n: u32) -> (f64, f64) {
     const EULER: f64 = 0.577_215_664_901_532_9;
-    let (mut x, mut ln_gamma, mut digamma) = if n % 2 == 0 {
+    let (mut x, mut ln_gamma, mut digamma) = if n.is_multiple_of(2) {
         (1.0, 0.0, -EULER)
     } else {
         let half = 0.5 * core::f64::consts::PI.ln();

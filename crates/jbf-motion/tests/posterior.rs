@@ -295,7 +295,7 @@ fn motion_between_exact_velocity_readings_is_recovered_at_fine_steps() {
         let n = 401;
         let time: Vec<f64> = (0..n).map(|k| 0.0025 * k as f64).collect();
         let velocity: Vec<f64> = time.iter().map(|t| 0.1 + 0.03 * (3.0 * t).sin()).collect();
-        let read = |k: usize| k % 8 == 0;
+        let read = |k: usize| k.is_multiple_of(8);
         let variance: Vec<f64> = (0..n).map(|k| if read(k) { 1e-14 } else { INF }).collect();
         let found: Smoothed<N> = smooth(
             &Readings {

@@ -99,7 +99,7 @@ fn one<T: Number, F: Film<T, N>, const N: usize>(
     let mut slopes = Vec::new();
     let sink = |i: usize, sample: &Sample<T>| {
         coefficient[i] = sample.coefficient.value();
-        [x[i], y[i]] = sample.xy.map(T::value);
+        [x[i], y[i]] = sample.xy.map(T::value).into();
         slopes.extend_from_slice(sample.coefficient.slopes());
     };
     let times = &run.time_s;

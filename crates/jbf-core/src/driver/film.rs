@@ -7,6 +7,7 @@ use crate::law::journal_full::motion::FullFilm;
 use crate::law::journal_full::JournalFull;
 use crate::real::Real;
 use crate::stepper::StiffSystem;
+use nalgebra::{SVector, Vector2, Vector4};
 
 /// Prevents other crates from implementing [`Film`]: the error control is designed for the films of
 /// this crate.
@@ -27,7 +28,7 @@ pub trait Film<T: Real, const N: usize>: sealed::Sealed {
     fn system(&self, touching: bool) -> Self::System;
 
     /// Returns the state at the position `(eps cos(phi), eps sin(phi))`, without velocity.
-    fn at(&self, xy: [T; 2]) -> [T; N];
+    fn at(&self, xy: Vector2<T>) -> SVector<T, N>;
 
     /// Returns the film without inertia, which has the same load, friction and time scale.
     fn journal(&self) -> &Journal<T>;
@@ -40,7 +41,7 @@ impl<T: Real> Film<T, 2> for Journal<T> {
         SmoothFilm::new(self, &self.nominal(), touching)
     }
 
-    fn at(&self, xy: [T; 2]) -> [T; 2] {
+    fn at(&self, xy: Vector2<T>) -> Vector2<T> {
         xy
     }
 
@@ -56,8 +57,8 @@ impl<T: Real> Film<T, 4> for JournalFull<T> {
         FullFilm::smooth(self, &self.film.nominal(), touching)
     }
 
-    fn at(&self, [x, y]: [T; 2]) -> [T; 4] {
-        [x, y, T::ZERO, T::ZERO]
+    fn at(&self, xy: Vector2<T>) -> Vector4<T> {
+        Vector4::new(xy.x, xy.y, T::ZERO, T::ZERO)
     }
 
     fn journal(&self) -> &Journal<T> {

@@ -4,10 +4,11 @@ use super::goal::Goal;
 use super::kinks::polynomial;
 use super::{checked, Cost, Excitation, Film, Sample, Start};
 use crate::error::Error;
-use crate::law::journal::Loaded;
+use crate::law::journal::{square, Loaded};
 use crate::real::Real;
 use crate::root::sqrt;
 use crate::stepper::{Linear, StiffSystem};
+use nalgebra::{SVector, Vector2};
 
 /// Integrates `film` along `excitation` from `start`, with output at each of `times_s` (ascending).
 ///
@@ -32,7 +33,7 @@ pub fn follow<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
 }
 
 /// Eccentricity ratio of the journal in a state of the integration.
-pub(super) fn radius<T: Real, const N: usize>(state: &[T; N]) -> f64 {
+pub(super) fn radius<T: Real, const N: usize>(state: &SVector<T, N>) -> f64 {
     sqrt((state[0] * state[0] + state[1] * state[1]).value())
 }
 
@@ -44,7 +45,7 @@ pub(super) struct Way<'a, T, F, E, S, const N: usize> {
     pub(super) times_s: &'a [f64],
     sink: S,
     pub(super) time_s: f64,
-    pub(super) state: [T; N],
+    pub(super) state: SVector<T, N>,
     pub(super) touching: bool,
     /// Length of the next step, proposed by the error control, s.
     pub(super) step_s: f64,
@@ -73,7 +74,7 @@ where
         let journal = film.journal();
         let loaded = journal.nominal();
         let eps = start.eps.unwrap_or(loaded.eps_tr);
-        let state = film.at([eps * start.phi_rad.cos(), eps * start.phi_rad.sin()]);
+        let state = film.at(Vector2::new(start.phi_rad.cos(), start.phi_rad.sin()) * eps);
         let mut way = Self {
             film,
             excitation,
@@ -120,7 +121,7 @@ where
 
     fn emit_start(&mut self) {
         while self.times_s.get(self.next) == Some(&self.time_s) {
-            self.hand_over([self.state[0], self.state[1]], self.time_s);
+            self.hand_over(Vector2::new(self.state[0], self.state[1]), self.time_s);
         }
     }
 
@@ -132,13 +133,14 @@ where
                 break;
             }
             let s = T::of((t - from) * inverse);
-            self.hand_over([polynomial(&along[0], s), polynomial(&along[1], s)], t);
+            let xy = Vector2::new(polynomial(&along[0], s), polynomial(&along[1], s));
+            self.hand_over(xy, t);
         }
     }
 
     #[inline]
-    fn hand_over(&mut self, xy: [T; 2], time_s: f64) {
-        let e2 = xy[0] * xy[0] + xy[1] * xy[1];
+    fn hand_over(&mut self, xy: Vector2<T>, time_s: f64) {
+        let e2 = square(&xy);
         let velocity_m_s = self.excitation.velocity_m_s(time_s);
         let journal = self.film.journal();
         let sliding = journal.sliding(&self.loaded, e2, T::of(velocity_m_s));

@@ -38,6 +38,7 @@ pub use side_by_side::{follow_side_by_side, step as step_side_by_side, Along};
 use crate::error::{check, positive, Error};
 use crate::law::journal::START_PHI_RAD;
 use crate::real::Real;
+use nalgebra::Vector2;
 
 /// Time and state of the film at the start of a trajectory.
 ///
@@ -92,7 +93,7 @@ impl<T: Real> Start<T> {
 #[non_exhaustive]
 pub struct Sample<T> {
     /// Position `eps cos(phi)` and `eps sin(phi)`.
-    pub xy: [T; 2],
+    pub xy: Vector2<T>,
     /// Eccentricity ratio.
     pub eps: T,
     /// Friction coefficient with the sign of the speed. At rest, it does not include the asperity
@@ -103,7 +104,7 @@ pub struct Sample<T> {
 impl Sample<f64> {
     /// Returns the attitude angle, rad.
     pub fn phi_rad(&self) -> f64 {
-        libm::atan2(self.xy[1], self.xy[0])
+        libm::atan2(self.xy.y, self.xy.x)
     }
 }
 

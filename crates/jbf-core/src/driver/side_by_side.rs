@@ -17,6 +17,7 @@ use crate::law::journal::Journal;
 use crate::real::Real;
 use crate::stepper::rodas5p::{self, Input, Stages};
 use crate::stepper::Linear;
+use nalgebra::{Matrix2, Vector2};
 
 type Step = Asked<f64, SmoothFilm<f64>, 2>;
 
@@ -109,11 +110,11 @@ impl Step {
     const NONE: Self = Self {
         system: SmoothFilm::NONE,
         linear: Linear {
-            slope: [0.0; 2],
-            jacobian: [[0.0; 2]; 2],
-            by_input: [0.0; 2],
+            slope: Vector2::new(0.0, 0.0),
+            jacobian: Matrix2::new(0.0, 0.0, 0.0, 0.0),
+            by_input: Vector2::new(0.0, 0.0),
         },
-        state: [0.5, 0.0],
+        state: Vector2::new(0.5, 0.0),
         input: Input {
             at_nodes: [0.0; 4],
             at_end: 0.0,
@@ -140,10 +141,10 @@ pub fn step<T: Real, const K: usize>(steps: &[Step; K], out: &mut [Stages<f64, 2
     ];
     let slope = [of(|s| s.linear.slope[0]), of(|s| s.linear.slope[1])];
     let jacobian = [
-        of(|s| s.linear.jacobian[0][0]),
-        of(|s| s.linear.jacobian[0][1]),
-        of(|s| s.linear.jacobian[1][0]),
-        of(|s| s.linear.jacobian[1][1]),
+        of(|s| s.linear.jacobian.m11),
+        of(|s| s.linear.jacobian.m12),
+        of(|s| s.linear.jacobian.m21),
+        of(|s| s.linear.jacobian.m22),
     ];
     let by_input = [of(|s| s.linear.by_input[0]), of(|s| s.linear.by_input[1])];
     let state = [of(|s| s.state[0]), of(|s| s.state[1])];
@@ -161,14 +162,16 @@ pub fn step<T: Real, const K: usize>(steps: &[Step; K], out: &mut [Stages<f64, 2
         let done = rodas5p::step(
             &SmoothFilm::of_parts([t(&system[0]), t(&system[1]), t(&system[2])]),
             &Linear {
-                slope: [t(&slope[0]), t(&slope[1])],
-                jacobian: [
-                    [t(&jacobian[0]), t(&jacobian[1])],
-                    [t(&jacobian[2]), t(&jacobian[3])],
-                ],
-                by_input: [t(&by_input[0]), t(&by_input[1])],
+                slope: Vector2::new(t(&slope[0]), t(&slope[1])),
+                jacobian: Matrix2::new(
+                    t(&jacobian[0]),
+                    t(&jacobian[1]),
+                    t(&jacobian[2]),
+                    t(&jacobian[3]),
+                ),
+                by_input: Vector2::new(t(&by_input[0]), t(&by_input[1])),
             },
-            &[t(&state[0]), t(&state[1])],
+            &Vector2::new(t(&state[0]), t(&state[1])),
             &Input {
                 at_nodes: [
                     t(&at_nodes[0]),
@@ -190,8 +193,8 @@ pub fn step<T: Real, const K: usize>(steps: &[Step; K], out: &mut [Stages<f64, 2
     }
     for (i, stages) in out.iter_mut().enumerate() {
         for (to, from) in stages.unknowns.iter_mut().zip(&unknowns) {
-            *to = [from[0][i], from[1][i]];
+            *to = Vector2::new(from[0][i], from[1][i]);
         }
-        stages.end = [end[0][i], end[1][i]];
+        stages.end = Vector2::new(end[0][i], end[1][i]);
     }
 }

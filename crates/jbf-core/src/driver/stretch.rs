@@ -20,6 +20,7 @@ use super::{Excitation, Film, Sample};
 use crate::real::Real;
 use crate::stepper::rodas5p::Stages;
 use crate::stepper::Linear;
+use nalgebra::Vector2;
 
 /// Purpose of the next trial step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,8 +194,8 @@ where
     /// Advances the time and keeps the film at its position, because no step is possible.
     #[cold]
     fn wait(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
-        let [x, y] = [self.state[0], self.state[1]];
-        self.state = self.film.at([x, y]);
+        let (x, y) = (self.state[0], self.state[1]);
+        self.state = self.film.at(Vector2::new(x, y));
         let still = |place: T| [place, T::ZERO, T::ZERO, T::ZERO, T::ZERO];
         self.emit(&[still(x), still(y)], tried.step_s, tried.to_s);
         self.step_s = 1e4 * tried.shortest_s;

@@ -10,13 +10,14 @@ use crate::real::Real;
 use crate::stepper::rodas5p::{self, Input, Stages};
 use crate::stepper::rodas5p_tableau::NODES;
 use crate::stepper::{Linear, StiffSystem};
+use nalgebra::SVector;
 
 /// Trial step to be computed: equations, state, inputs of its stages, and its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<T, Y, const N: usize> {
     pub(super) system: Y,
     pub(super) linear: Linear<T, N>,
-    pub(super) state: [T; N],
+    pub(super) state: SVector<T, N>,
     pub(super) input: Input<T>,
     /// Length of the step in dimensionless time.
     pub(super) dt: T,
@@ -254,6 +255,7 @@ mod tests {
     use super::*;
     use crate::law::journal::{Journal, Parameters};
     use crate::{Bearing, Clock};
+    use nalgebra::Vector2;
 
     /// A step is accepted only if it uses at most three quarters of the gap to the wall, whatever
     /// its error is.
@@ -284,10 +286,10 @@ mod tests {
                 (-0.2, true),
             ];
             for (share, sound) in ends {
-                stages.end = [eps + share * (1.0 - eps), 0.0];
+                stages.end = Vector2::new(eps + share * (1.0 - eps), 0.0);
                 assert_eq!(way.tried(&asked, &stages).sound, sound, "{eps} {share}");
             }
-            stages.end = [f64::NAN, 0.0];
+            stages.end = Vector2::new(f64::NAN, 0.0);
             assert!(!way.tried(&asked, &stages).sound);
         }
     }

@@ -56,6 +56,6 @@ impl<T: Real> Effect<T> for ViscousThinning<T> {
         _dt_s: T,
     ) {
         let thinner = T::ONE + journal.velocity_m_s.abs() * self.slowness_s_m;
-        sliding.smooth = sliding.smooth / thinner;
+        sliding.smooth /= thinner;
     }
 }

@@ -4,6 +4,7 @@
 
 use super::{along, Stepper, System};
 use crate::real::Real;
+use nalgebra::SVector;
 
 /// Explicit Euler method.
 #[derive(Clone, Copy, Debug, Default)]
@@ -14,7 +15,7 @@ impl Stepper for Euler {
     fn step<T: Real, S: System<T, N>, const N: usize>(
         &self,
         system: &S,
-        state: &mut [T; N],
+        state: &mut SVector<T, N>,
         input: [T; 3],
         dt: T,
     ) {

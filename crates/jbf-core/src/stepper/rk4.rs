@@ -2,6 +2,7 @@
 
 use super::{along, Stepper, System};
 use crate::real::Real;
+use nalgebra::SVector;
 
 /// Classical Runge-Kutta method of order four.
 #[derive(Clone, Copy, Debug, Default)]
@@ -12,7 +13,7 @@ impl Stepper for Rk4 {
     fn step<T: Real, S: System<T, N>, const N: usize>(
         &self,
         system: &S,
-        state: &mut [T; N],
+        state: &mut SVector<T, N>,
         input: [T; 3],
         dt: T,
     ) {

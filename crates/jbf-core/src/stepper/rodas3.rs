@@ -14,6 +14,7 @@
 
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
+use nalgebra::SVector;
 
 /// L-stable Rosenbrock method RODAS3 of order three.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +25,7 @@ impl StiffStepper for Rodas3 {
     fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
         &self,
         system: &S,
-        state: &mut [T; N],
+        state: &mut SVector<T, N>,
         [start, middle, end]: [T; 3],
         dt: T,
     ) {
@@ -37,21 +38,18 @@ impl StiffStepper for Rodas3 {
         let change = T::of(4.0) * middle - T::of(3.0) * start - end;
         let inverse_dt = T::ONE / dt;
         let solver = S::Solver::new(&jacobian, inverse_dt * T::of(2.0));
-        let right = |f: &[T; N], sums: [T; N], share: f64| {
-            core::array::from_fn(|i| {
-                f[i] + sums[i] * inverse_dt + T::of(share) * change * by_input[i]
-            })
+        let right = |f: SVector<T, N>, sums: SVector<T, N>, share: f64| {
+            f + sums * inverse_dt + by_input * (T::of(share) * change)
         };
 
-        let k1 = solver.solve(&right(&slope, [T::ZERO; N], 0.5));
-        let four = core::array::from_fn(|i| T::of(4.0) * k1[i]);
-        let k2 = solver.solve(&right(&slope, four, 1.5));
-        let at = core::array::from_fn(|i| state[i] + T::of(2.0) * k1[i]);
-        let fewer: [T; N] = core::array::from_fn(|i| k1[i] - k2[i]);
-        let k3 = solver.solve(&right(&system.slope(&at, end), fewer, 0.0));
-        let at = core::array::from_fn(|i| at[i] + k3[i]);
-        let last = core::array::from_fn(|i| fewer[i] - T::of(8.0 / 3.0) * k3[i]);
-        let k4 = solver.solve(&right(&system.slope(&at, end), last, 0.0));
-        *state = core::array::from_fn(|i| at[i] + k4[i]);
+        let k1 = solver.solve(&right(slope, SVector::zeros(), 0.5));
+        let k2 = solver.solve(&right(slope, k1 * T::of(4.0), 1.5));
+        let at = *state + k1 * T::of(2.0);
+        let fewer = k1 - k2;
+        let k3 = solver.solve(&right(system.slope(&at, end), fewer, 0.0));
+        let at = at + k3;
+        let last = fewer - k3 * T::of(8.0 / 3.0);
+        let k4 = solver.solve(&right(system.slope(&at, end), last, 0.0));
+        *state = at + k4;
     }
 }

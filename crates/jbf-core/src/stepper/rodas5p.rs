@@ -13,6 +13,7 @@
 use super::rodas5p_tableau::{A, C, D, GAMMA, H, NODES};
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
+use nalgebra::{ArrayStorage, SVector};
 
 /// Input of a system along a step, as required by the stages of the method.
 #[derive(Clone, Copy, Debug)]
@@ -28,23 +29,23 @@ pub(crate) struct Input<T> {
 /// Result of one step: the unknowns of all stages and the state at the end.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize> {
-    pub(crate) unknowns: [[T; N]; 8],
+    pub(crate) unknowns: [SVector<T, N>; 8],
     /// State at the end of the step.
-    pub end: [T; N],
+    pub end: SVector<T, N>,
 }
 
 impl<const N: usize> Stages<f64, N> {
     /// Placeholder with zeros.
     pub(crate) const NONE: Self = Self {
-        unknowns: [[0.0; N]; 8],
-        end: [0.0; N],
+        unknowns: [SVector::from_array_storage(ArrayStorage([[0.0; N]])); 8],
+        end: SVector::from_array_storage(ArrayStorage([[0.0; N]])),
     };
 }
 
 impl<T: Real, const N: usize> Stages<T, N> {
     /// Returns the estimated error of the state at the end of the step.
     #[inline]
-    pub fn error(&self) -> &[T; N] {
+    pub fn error(&self) -> &SVector<T, N> {
         &self.unknowns[7]
     }
 
@@ -55,7 +56,7 @@ impl<T: Real, const N: usize> Stages<T, N> {
     /// is much less accurate for a stiff film, because the derivatives amplify the error of the
     /// state.)
     #[inline]
-    pub fn quartic(&self, start: &[T; N], n: usize) -> [T; 5] {
+    pub fn quartic(&self, start: &SVector<T, N>, n: usize) -> [T; 5] {
         let row = |r: usize| {
             let mut sum = T::ZERO;
             for (unknown, &h) in self.unknowns.iter().zip(&H[r]) {
@@ -68,17 +69,16 @@ impl<T: Real, const N: usize> Stages<T, N> {
     }
 }
 
-/// Computes component `i` of `sum_j row_j u_j` over the first `K` unknowns; `K` is a constant so
-/// that the sum has no loop.
+/// Computes `sum_j row_j u_j` over the first `K` unknowns; `K` is a constant so that the sum has no
+/// loop.
 #[inline(always)]
 fn combined<T: Real, const N: usize, const K: usize>(
     row: &[f64],
-    unknowns: &[[T; N]; 8],
-    i: usize,
-) -> T {
-    let mut sum = unknowns[0][i] * T::of(row[0]);
+    unknowns: &[SVector<T, N>; 8],
+) -> SVector<T, N> {
+    let mut sum = unknowns[0] * T::of(row[0]);
     for j in 1..K {
-        sum += unknowns[j][i] * T::of(row[j]);
+        sum += unknowns[j] * T::of(row[j]);
     }
     sum
 }
@@ -88,28 +88,25 @@ fn combined<T: Real, const N: usize, const K: usize>(
 pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     system: &S,
     linear: &Linear<T, N>,
-    state: &[T; N],
+    state: &SVector<T, N>,
     input: &Input<T>,
     dt: T,
 ) -> Stages<T, N> {
-    use core::array::from_fn;
     let inverse_dt = T::ONE / dt;
     let solver = S::Solver::new(&linear.jacobian, inverse_dt * T::of(1.0 / GAMMA));
     // f_t h, of which each stage takes a share.
-    let drift: [T; N] = from_fn(|i| linear.by_input[i] * input.change);
-    let mut u = [[T::ZERO; N]; 8];
-    u[0] = solver.solve(&from_fn(|i| linear.slope[i] + drift[i] * T::of(D[0])));
-    let mut at: [T; N];
+    let drift = linear.by_input * input.change;
+    let mut u = [SVector::zeros(); 8];
+    u[0] = solver.solve(&(linear.slope + drift * T::of(D[0])));
+    let mut at: SVector<T, N>;
     // Written out stage by stage: a loop takes a third longer.
     macro_rules! stage {
         ($k:literal, $input:expr, $at:expr, $share:expr) => {
             at = $at;
             let slope = system.slope(&at, $input);
-            u[$k] = solver.solve(&from_fn(|i| {
-                slope[i]
-                    + combined::<T, N, $k>(&C[$k - 1], &u, i) * inverse_dt
-                    + $share.map_or(T::ZERO, |d: f64| drift[i] * T::of(d))
-            }));
+            let share = $share.map_or(SVector::zeros(), |d: f64| drift * T::of(d));
+            let sum = combined::<T, N, $k>(&C[$k - 1], &u);
+            u[$k] = solver.solve(&(slope + sum * inverse_dt + share));
         };
     }
     macro_rules! early {
@@ -117,19 +114,14 @@ pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
             stage!(
                 $k,
                 input.at_nodes[$k - 1],
-                from_fn(|i| state[i] + combined::<T, N, $k>(&A[$k - 1], &u, i)),
+                *state + combined::<T, N, $k>(&A[$k - 1], &u),
                 Some(D[$k])
             )
         };
     }
     macro_rules! late {
         ($k:literal) => {
-            stage!(
-                $k,
-                input.at_end,
-                from_fn(|i| at[i] + u[$k - 1][i]),
-                None::<f64>
-            )
+            stage!($k, input.at_end, at + u[$k - 1], None::<f64>)
         };
     }
     early!(1);
@@ -139,14 +131,14 @@ pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     stage!(
         5,
         input.at_end,
-        from_fn(|i| state[i] + combined::<T, N, 5>(&A[4], &u, i)),
+        *state + combined::<T, N, 5>(&A[4], &u),
         None::<f64>
     );
     late!(6);
     late!(7);
     Stages {
         unknowns: u,
-        end: from_fn(|i| at[i] + u[7][i]),
+        end: at + u[7],
     }
 }
 
@@ -159,7 +151,7 @@ impl StiffStepper for Rodas5P {
     fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
         &self,
         system: &S,
-        state: &mut [T; N],
+        state: &mut SVector<T, N>,
         [start, middle, end]: [T; 3],
         dt: T,
     ) {

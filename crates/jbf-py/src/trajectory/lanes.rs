@@ -123,7 +123,7 @@ fn in_lanes<E: Excitation>(
             times_s: run.time_s.as_slice(),
             sink: move |i: usize, sample: &Sample<f64>| {
                 out.coefficient[i] = sample.coefficient;
-                [out.x[i], out.y[i]] = sample.xy;
+                [out.x[i], out.y[i]] = sample.xy.into();
             },
         })
     });

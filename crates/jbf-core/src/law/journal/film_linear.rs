@@ -5,12 +5,13 @@
 //! J     = Q M Q^T,     M = [ d/d eps, (1/eps) d/d phi ],   Q = [ r, t ]
 //! ```
 
-use super::film_motion::{slope, Asperities, Film};
+use super::film_motion::{slope, square, Asperities, Film};
 use super::{Journal, Loaded};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
 use crate::stepper::{Linear, StiffSystem, System, TwoByTwo};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+use nalgebra::{Matrix2, Vector2};
 
 /// Position of the journal centre in polar coordinates.
 #[derive(Clone, Copy)]
@@ -36,25 +37,24 @@ impl<T: Real> Polar<T> {
         }
     }
 
+    /// Returns the rotation `Q` of the co-rotating frame: its columns are the radial and the
+    /// tangential direction.
+    #[inline]
+    fn rotation(&self) -> Matrix2<T> {
+        Matrix2::new(self.cos, -self.sin, self.sin, self.cos)
+    }
+
     /// Returns the matrix `Q M Q^T`, with the rotation `Q` of the co-rotating frame.
     #[inline]
-    pub fn turned(&self, m: [[T; 2]; 2]) -> [[T; 2]; 2] {
-        let (c, s) = (self.cos, self.sin);
-        let along = [c * m[0][0] - s * m[1][0], c * m[0][1] - s * m[1][1]];
-        let across = [s * m[0][0] + c * m[1][0], s * m[0][1] + c * m[1][1]];
-        [
-            [along[0] * c - along[1] * s, along[0] * s + along[1] * c],
-            [across[0] * c - across[1] * s, across[0] * s + across[1] * c],
-        ]
+    pub fn turned(&self, m: Matrix2<T>) -> Matrix2<T> {
+        let q = self.rotation();
+        q * m * q.transpose()
     }
 
     /// Returns the Cartesian vector with these radial and tangential components.
     #[inline]
-    pub fn vector(&self, radial: T, tangential: T) -> [T; 2] {
-        [
-            radial * self.cos - tangential * self.sin,
-            radial * self.sin + tangential * self.cos,
-        ]
+    pub fn vector(&self, radial: T, tangential: T) -> Vector2<T> {
+        self.rotation() * Vector2::new(radial, tangential)
     }
 }
 
@@ -92,10 +92,12 @@ pub(super) fn linearise<T: Real>(
     let tangential_phi = ratio * radial_phi - squeeze * c * d;
     Linear {
         slope: at.vector(radial, tangential),
-        jacobian: at.turned([
-            [radial_e, (radial_phi - tangential) * at.inverse_e],
-            [tangential_e, (tangential_phi + radial) * at.inverse_e],
-        ]),
+        jacobian: at.turned(Matrix2::new(
+            radial_e,
+            (radial_phi - tangential) * at.inverse_e,
+            tangential_e,
+            (tangential_phi + radial) * at.inverse_e,
+        )),
         by_input: at.vector(T::ZERO, T::of(0.5) * e),
     }
 }
@@ -104,8 +106,9 @@ impl<T: Real> StiffSystem<T, 2> for Film<'_, T> {
     type Solver = TwoByTwo<T>;
 
     #[inline]
-    fn linearise(&self, way: &[T; 2], ub: T) -> Linear<T, 2> {
-        let at = Polar::held(self.from[0] + way[0], self.from[1] + way[1]);
+    fn linearise(&self, way: &Vector2<T>, ub: T) -> Linear<T, 2> {
+        let to = self.from + way;
+        let at = Polar::held(to.x, to.y);
         let touch = (at.e - self.loaded.eps_tr).max(T::ZERO);
         let stiffness = T::of(2.0) * self.law.k0 * touch;
         let asperities = [self.law.k0 * touch * touch, stiffness];
@@ -164,13 +167,13 @@ impl<T: Copy> SmoothFilm<T> {
 
 impl<T: Real> System<T, 2> for SmoothFilm<T> {
     #[inline]
-    fn slope(&self, &[x, y]: &[T; 2], ub: T) -> [T; 2] {
+    fn slope(&self, xy: &Vector2<T>, ub: T) -> Vector2<T> {
         let asperities = Asperities {
             k0: self.k0,
             eps_tr: self.eps_tr,
             part: false,
         };
-        slope(self.load_number, [x, y], x * x + y * y, &asperities, ub)
+        slope(self.load_number, *xy, square(xy), &asperities, ub)
     }
 }
 
@@ -178,13 +181,13 @@ impl<T: Real> StiffSystem<T, 2> for SmoothFilm<T> {
     type Solver = TwoByTwo<T>;
 
     #[inline]
-    fn linearise(&self, &[x, y]: &[T; 2], ub: T) -> Linear<T, 2> {
-        let e = (x * x + y * y).sqrt();
+    fn linearise(&self, xy: &Vector2<T>, ub: T) -> Linear<T, 2> {
+        let e = square(xy).sqrt();
         let inverse_e = T::ONE / e;
         let at = Polar {
             e,
-            cos: x * inverse_e,
-            sin: y * inverse_e,
+            cos: xy.x * inverse_e,
+            sin: xy.y * inverse_e,
             inverse_e,
         };
         let touch = at.e - self.eps_tr;
@@ -205,6 +208,7 @@ mod tests {
     use crate::law::journal_full::motion::FullFilm;
     use crate::law::journal_full::JournalFull;
     use crate::{Bearing, Clock, Dual};
+    use nalgebra::{SVector, Vector4};
 
     type D = Dual<5>;
 
@@ -220,8 +224,8 @@ mod tests {
     }
 
     /// Checks analytical derivatives against those of dual numbers.
-    fn agree<const N: usize>(system: &impl StiffSystem<D, N>, state: [f64; N], ub: f64) {
-        let lifted = core::array::from_fn(|i| D::parameter(state[i], i));
+    fn agree<const N: usize>(system: &impl StiffSystem<D, N>, state: SVector<f64, N>, ub: f64) {
+        let lifted = SVector::from_fn(|i, _| D::parameter(state[i], i));
         let exact = system.slope(&lifted, D::parameter(ub, 4));
         let got = system.linearise(&state.map(D::of), D::of(ub));
         for (i, row) in exact.iter().enumerate() {
@@ -231,7 +235,7 @@ mod tests {
             };
             near(got.slope[i].value, row.value);
             for (j, by_state) in row.slope[..N].iter().enumerate() {
-                near(got.jacobian[i][j].value, *by_state);
+                near(got.jacobian[(i, j)].value, *by_state);
             }
             near(got.by_input[i].value, row.slope[4]);
         }
@@ -251,23 +255,24 @@ mod tests {
         ];
         for (eps, phi) in places {
             let (x, y) = (eps * libm::cos(phi), eps * libm::sin(phi));
-            let (law_film, from) = (film, [D::ZERO; 2]);
+            let (law_film, from) = (film, Vector2::zeros());
             let held = Film {
                 law: law_film,
                 loaded: &loaded,
                 from,
                 from_e2: D::ZERO,
             };
-            agree(&held, [x, y], 0.7);
-            let state = [x, y, 0.03, -0.2];
+            let xy = Vector2::new(x, y);
+            agree(&held, xy, 0.7);
+            let state = Vector4::new(x, y, 0.03, -0.2);
             agree(&FullFilm::held(&law, &loaded, from), state, 0.7);
             for touching in [false, true] {
-                agree(&SmoothFilm::new(film, &loaded, touching), [x, y], 0.7);
+                agree(&SmoothFilm::new(film, &loaded, touching), xy, 0.7);
                 agree(&FullFilm::smooth(&law, &loaded, touching), state, 0.7);
             }
             let touching = eps > loaded.eps_tr.value;
             let smooth = SmoothFilm::new(film, &loaded, touching);
-            let at = [D::of(x), D::of(y)];
+            let at = xy.map(D::of);
             let (a, b) = (smooth.slope(&at, D::of(0.7)), held.slope(&at, D::of(0.7)));
             assert!((a[0] - b[0]).value.abs() + (a[1] - b[1]).value.abs() < 1e-11);
         }

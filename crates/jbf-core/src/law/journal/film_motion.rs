@@ -17,6 +17,7 @@ use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
 use crate::stepper::System;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+use nalgebra::Vector2;
 
 /// Eccentricity ratio below which the journal is at the centre, where its direction is undefined.
 const CENTRE: f64 = 1e-12;
@@ -28,6 +29,12 @@ pub(super) fn within<T: Real>(e2: T) -> bool {
     e2 <= T::EPS_LIMIT * T::EPS_LIMIT && e2 >= T::of(CENTRE * CENTRE)
 }
 
+/// Square `x^2 + y^2` of the eccentricity ratio at a position.
+#[inline(always)]
+pub(crate) fn square<T: Real>(xy: &Vector2<T>) -> T {
+    xy.x * xy.x + xy.y * xy.y
+}
+
 /// Film equations as a system of two states with the input `|Ub|`.
 ///
 /// The states are the displacement since the start of the step, because single precision resolves
@@ -36,33 +43,33 @@ pub(super) struct Film<'a, T> {
     pub(super) law: &'a Journal<T>,
     pub(super) loaded: &'a Loaded<T>,
     /// Values of `x` and `y` at the start of the step.
-    pub(super) from: [T; 2],
+    pub(super) from: Vector2<T>,
     /// Value of `x^2 + y^2` at the start of the step.
     pub(super) from_e2: T,
 }
 
 impl<T: Real> System<T, 2> for Film<'_, T> {
     #[inline(always)]
-    fn slope(&self, way: &[T; 2], ub: T) -> [T; 2] {
-        let (x, y) = (self.from[0] + way[0], self.from[1] + way[1]);
-        self.anywhere(x, y, x * x + y * y, ub)
+    fn slope(&self, way: &Vector2<T>, ub: T) -> Vector2<T> {
+        let xy = self.from + way;
+        self.anywhere(xy, square(&xy), ub)
     }
 
     #[inline(always)]
-    fn slope_at_start(&self, _way: &[T; 2], ub: T) -> [T; 2] {
-        self.anywhere(self.from[0], self.from[1], self.from_e2, ub)
+    fn slope_at_start(&self, _way: &Vector2<T>, ub: T) -> Vector2<T> {
+        self.anywhere(self.from, self.from_e2, ub)
     }
 }
 
 impl<T: Real> Film<'_, T> {
     #[inline(always)]
-    fn anywhere(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
+    fn anywhere(&self, xy: Vector2<T>, e2: T, ub: T) -> Vector2<T> {
         let outside = !within(e2);
         if outside && !T::SIDE_BY_SIDE {
-            return self.edge(x, y, e2, ub);
+            return self.edge(xy.x, xy.y, e2, ub);
         }
         let ub = if outside { T::of(f64::NAN) } else { ub };
-        self.inside(x, y, e2, ub)
+        self.inside(xy, e2, ub)
     }
 
     /// Time derivative of the position outside the bearing and at the centre.
@@ -71,21 +78,21 @@ impl<T: Real> Film<'_, T> {
     /// eccentricity in the same direction. The centre is evaluated at a small distance from it.
     #[cold]
     #[inline(never)]
-    fn edge(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
+    fn edge(&self, x: T, y: T, e2: T, ub: T) -> Vector2<T> {
         let limit = T::EPS_LIMIT * T::EPS_LIMIT;
         if e2 > limit {
             let shrink = T::EPS_LIMIT / e2.sqrt();
-            self.inside(x * shrink, y * shrink, limit, ub)
+            self.inside(Vector2::new(x * shrink, y * shrink), limit, ub)
         } else {
             let near = T::of(CENTRE);
-            self.inside(near, T::ZERO, near * near, ub)
+            self.inside(Vector2::new(near, T::ZERO), near * near, ub)
         }
     }
 
     #[inline(always)]
-    fn inside(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
+    fn inside(&self, xy: Vector2<T>, e2: T, ub: T) -> Vector2<T> {
         let asperities = self.law.asperities(self.loaded);
-        slope(self.loaded.load_number, [x, y], e2, &asperities, ub)
+        slope(self.loaded.load_number, xy, e2, &asperities, ub)
     }
 }
 
@@ -179,11 +186,11 @@ impl<T: Real> Gap<T> {
 #[inline(always)]
 pub(super) fn slope<T: Real>(
     fb: T,
-    xy: [T; 2],
+    xy: Vector2<T>,
     e2: T,
     asperities: &Asperities<T>,
     ub: T,
-) -> [T; 2] {
+) -> Vector2<T> {
     if T::HAS_SLOPES {
         film_slopes::motion(fb, xy, e2.value(), asperities, ub)
     } else {
@@ -195,7 +202,8 @@ pub(super) fn slope<T: Real>(
 /// Time derivative of the position in which every operation carries the derivatives of its
 /// arguments.
 #[inline(always)]
-pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T) -> [T; 2] {
+pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, xy: Vector2<T>, load: T, ub: T) -> Vector2<T> {
+    let (x, y) = (xy.x, xy.y);
     let &Gap {
         e2,
         d,
@@ -214,7 +222,7 @@ pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T
     let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
     let lag = (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
     let turn = swing - lag;
-    [radial * x - turn * y, radial * y + turn * x]
+    Vector2::new(radial * x - turn * y, radial * y + turn * x)
 }
 
 #[cfg(test)]
@@ -223,11 +231,9 @@ mod tests {
     use crate::law::journal::Parameters;
     use crate::{Bearing, Clock};
 
-    fn near(got: [f64; 2], wanted: [f64; 2]) {
-        let size = wanted.iter().fold(1e-9, |m: f64, w| m.max(w.abs()));
-        for (got, wanted) in got.iter().zip(wanted) {
-            assert!((got - wanted).abs() <= 1e-9 * size, "{got} {wanted}");
-        }
+    fn near(got: Vector2<f64>, wanted: Vector2<f64>) {
+        let size = wanted.amax().max(1e-9);
+        assert!((got - wanted).amax() <= 1e-9 * size, "{got} {wanted}");
     }
 
     /// The load moves a journal at the centre straight down with `eps' = (2/pi) Fb`. A stage
@@ -242,24 +248,25 @@ mod tests {
         )
         .expect("valid");
         let loaded = law.nominal();
-        let at = |from: [f64; 2]| Film {
+        let at = |from: Vector2<f64>| Film {
             law: &law,
             loaded: &loaded,
             from,
-            from_e2: from[0] * from[0] + from[1] * from[1],
+            from_e2: square(&from),
         };
+        let still = Vector2::zeros();
         for ub in [0.0, 0.7, 3.0] {
-            let wanted = [FRAC_2_PI * loaded.load_number, 0.0];
-            near(at([0.0, 0.0]).slope_at_start(&[0.0; 2], ub), wanted);
-            near(at([0.3, -0.4]).slope(&[-0.3, 0.4], ub), wanted);
+            let wanted = Vector2::new(FRAC_2_PI * loaded.load_number, 0.0);
+            near(at(still).slope_at_start(&still, ub), wanted);
+            let off = Vector2::new(0.3, -0.4);
+            near(at(off).slope(&-off, ub), wanted);
             let limit = <f64 as Real>::EPS_LIMIT * (1.0 - 1e-15);
             for direction in [[1.0, 0.0], [0.6, 0.8], [-0.8, 0.6]] {
-                let edge = at(direction.map(|d| limit * d)).slope(&[0.0; 2], ub);
+                let direction = Vector2::from(direction);
+                let edge = at(direction * limit).slope(&still, ub);
                 for beyond in [1.0, 1.5, 4.0] {
-                    let got = at(direction.map(|d| beyond * d)).slope(&[0.0; 2], ub);
-                    let size = edge[0].abs() + edge[1].abs();
-                    let apart = (got[0] - edge[0]).abs() + (got[1] - edge[1]).abs();
-                    assert!(apart <= 1e-3 * size, "{got:?} {edge:?}");
+                    let got = at(direction * beyond).slope(&still, ub);
+                    assert!((got - edge).norm() <= 1e-3 * edge.norm(), "{got} {edge}");
                 }
             }
         }

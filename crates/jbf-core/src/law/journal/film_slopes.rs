@@ -18,22 +18,24 @@ use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::friction::Friction;
 use crate::real::Real;
 use core::f64::consts::FRAC_2_PI;
+use nalgebra::Vector2;
 
 /// Time derivative of the position in the film at `e2 = x^2 + y^2`, with combined derivatives.
 #[inline(always)]
 pub(super) fn motion<T: Real>(
     fb: T,
-    xy: [T; 2],
+    xy: Vector2<T>,
     e2: f64,
     asperities: &Asperities<T>,
     ub: T,
-) -> [T; 2] {
+) -> Vector2<T> {
     let gap = Gap::at(e2);
     let held = asperities.plain();
-    let [x, y] = xy.map(T::value);
+    let place = xy.map(T::value);
+    let (x, y) = (place.x, place.y);
     let f = fb.value();
     let load = held.load(gap.e);
-    let slope = plain(&gap, f, [x, y], load, ub.value());
+    let slope = plain(&gap, f, place, load, ub.value());
 
     let touch = held.touch(gap.e);
     let touch = if load > 0.0 || !held.part { touch } else { 0.0 };
@@ -72,28 +74,28 @@ pub(super) fn motion<T: Real>(
     );
     let (along, across) = (g * x - h * y, g * y + h * x);
     let turn_fb = -q * y;
-    [
+    Vector2::new(
         T::joined(
-            slope[0],
+            slope.x,
             [
-                (xy[0], radial + radial_x * x - turn_x * y),
-                (xy[1], radial_y * x - turn_y * y - turn),
+                (xy.x, radial + radial_x * x - turn_x * y),
+                (xy.y, radial_y * x - turn_y * y - turn),
                 (pressed, along),
                 (fb, along * push_fb - turn_fb * y),
                 (ub, -0.5 * y),
             ],
         ),
         T::joined(
-            slope[1],
+            slope.y,
             [
-                (xy[0], radial_x * y + turn_x * x + turn),
-                (xy[1], radial + radial_y * y + turn_y * x),
+                (xy.x, radial_x * y + turn_x * x + turn),
+                (xy.y, radial + radial_y * y + turn_y * x),
                 (pressed, across),
                 (fb, across * push_fb + turn_fb * x),
                 (ub, 0.5 * x),
             ],
         ),
-    ]
+    )
 }
 
 /// Friction coefficient, equation (3.14) of Cohn (1998), from `f_m`, `gamma (C R/L^2) 2 pi / U_tr`
@@ -139,6 +141,7 @@ pub(super) fn sliding<T: Real>(
 
 #[cfg(test)]
 mod tests {
+    use super::super::film_motion::square;
     use super::*;
     use crate::law::journal::{Journal, Parameters};
     use crate::{Bearing, Clock, Dual};
@@ -169,20 +172,20 @@ mod tests {
             (1e-3, 2.0, 1.0),
         ] {
             for part in [true, false] {
-                let xy = [eps * libm::cos(phi), eps * libm::sin(phi)];
-                let xy = [D::parameter(xy[0], 0), D::parameter(xy[1], 1)];
+                let xy = Vector2::new(libm::cos(phi), libm::sin(phi)) * eps;
+                let xy = Vector2::new(D::parameter(xy.x, 0), D::parameter(xy.y, 1));
                 let asperities = Asperities {
                     k0: D::parameter(7.5e5, 2),
                     eps_tr: D::parameter(0.972, 3),
                     part,
                 };
                 let (fb, ub) = (D::parameter(323.5, 4), D::parameter(ub, 5));
-                let e2 = xy[0] * xy[0] + xy[1] * xy[1];
+                let e2 = square(&xy);
                 let gap = Gap::at(e2);
                 let exact = plain(&gap, fb, xy, asperities.load(gap.e), ub);
                 let got = motion(fb, xy, e2.value, &asperities, ub);
-                near(&got[0], &exact[0]);
-                near(&got[1], &exact[1]);
+                near(&got.x, &exact.x);
+                near(&got.y, &exact.y);
             }
         }
     }

@@ -53,7 +53,9 @@ use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+pub(crate) use film_motion::square;
 use film_motion::{within, Asperities, Film, Gap};
+use nalgebra::Vector2;
 use parameters::FILM_PARAMETERS;
 
 /// Attitude angle at the start of a run, rad; its influence decays within a second.
@@ -181,7 +183,7 @@ impl<T: Real> Journal<T> {
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
         // Minus zero is the neutral start of a sum: `-0.0 + x` is exactly `x`.
-        let mut way = [-T::ZERO; 2];
+        let mut way = Vector2::repeat(-T::ZERO);
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
         self.moved(state, way);
     }
@@ -203,30 +205,27 @@ impl<T: Real> Journal<T> {
             from_e2: state.e2,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
-        let mut way = [-T::ZERO; 2];
+        let mut way = Vector2::repeat(-T::ZERO);
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
         self.moved(state, way);
     }
 
     /// Stores the position after the displacement `way`, limited to the inside of the bearing.
     #[inline(always)]
-    fn moved(&self, state: &mut State<T>, way: [T; 2]) {
-        let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
-        let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
-        let e2 = xy[0] * xy[0] + xy[1] * xy[1];
+    fn moved(&self, state: &mut State<T>, way: Vector2<T>) {
+        let way = way + state.kept;
+        let xy = state.xy + way;
+        let e2 = square(&xy);
         let limit = T::EPS_LIMIT * T::EPS_LIMIT;
-        // Compensated summation (Kahan 1965): the rounding error of this sum enters the next.
-        let kept = [
-            way[0] - (xy[0] - state.xy[0]),
-            way[1] - (xy[1] - state.xy[1]),
-        ];
         if T::SIDE_BY_SIDE {
             state.clamped |= u32::from(!within(e2));
-            (state.xy, state.e2, state.kept) = (xy, e2, kept);
-            return;
         }
-        if e2 <= limit {
-            (state.xy, state.e2, state.kept) = (xy, e2, kept);
+        if T::SIDE_BY_SIDE || e2 <= limit {
+            // Compensated summation (Kahan 1965): the rounding error of this sum enters the next.
+            // By components: assembling the vector first takes five instructions more.
+            state.kept.x = way.x - (xy.x - state.xy.x);
+            state.kept.y = way.y - (xy.y - state.xy.y);
+            (state.xy, state.e2) = (xy, e2);
             return;
         }
         // The step was too coarse. A step without finite values leaves the film unchanged; any
@@ -234,7 +233,7 @@ impl<T: Real> Journal<T> {
         state.clamped = state.clamped.saturating_add(1);
         if e2.is_finite() {
             let shrink = self.deepest(&state.loaded) / e2.sqrt();
-            state.put([xy[0] * shrink, xy[1] * shrink]);
+            state.put(xy * shrink);
         }
     }
 

@@ -7,6 +7,7 @@
 use super::{Journal, Loaded, State};
 use crate::clock::Clock;
 use crate::real::Real;
+use nalgebra::Vector2;
 
 /// Constants of `N` journal laws and states of their films, with one array per variable.
 #[derive(Clone, Copy, Debug)]
@@ -90,9 +91,9 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
     #[inline(always)]
     pub fn film(&self, i: usize) -> State<T> {
         State {
-            xy: [self.x[i], self.y[i]],
+            xy: Vector2::new(self.x[i], self.y[i]),
             e2: self.e2[i],
-            kept: [self.kept_x[i], self.kept_y[i]],
+            kept: Vector2::new(self.kept_x[i], self.kept_y[i]),
             loaded: self.loaded(i),
             clamped: self.clamped[i],
         }

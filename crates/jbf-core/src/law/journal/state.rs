@@ -1,6 +1,8 @@
 //! State of the film, and the constants of the journal law that depend on the load.
 
+use super::film_motion::square;
 use crate::real::Real;
+use nalgebra::Vector2;
 
 /// Constants of the journal law that depend on the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +25,14 @@ impl<T: Real> Loaded<T> {
 /// State of the film: the position of the journal in its bearing, under the present load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
-    pub(super) xy: [T; 2],
+    pub(super) xy: Vector2<T>,
     /// Value of `x^2 + y^2` after the last step.
     pub(super) e2: T,
     /// Accumulated rounding error of `xy`.
     ///
     /// Without it, a film in single precision that moves slowly, or takes short steps, would not
     /// move.
-    pub(super) kept: [T; 2],
+    pub(super) kept: Vector2<T>,
     pub(super) loaded: Loaded<T>,
     /// Number of steps after which the position was limited to the inside of the bearing, because
     /// `dt_s` was too coarse or the input not finite.
@@ -41,21 +43,21 @@ impl<T: Real> State<T> {
     /// Creates the state at a given eccentricity ratio and attitude angle (rad).
     pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
         let mut state = Self {
-            xy: [T::ZERO; 2],
+            xy: Vector2::zeros(),
             e2: T::ZERO,
-            kept: [T::ZERO; 2],
+            kept: Vector2::zeros(),
             loaded,
             clamped: 0,
         };
-        state.put([eps * phi_rad.cos(), eps * phi_rad.sin()]);
+        state.put(Vector2::new(phi_rad.cos(), phi_rad.sin()) * eps);
         state
     }
 
     /// Sets the position of the journal and clears its rounding error.
-    pub(super) fn put(&mut self, xy: [T; 2]) {
+    pub(super) fn put(&mut self, xy: Vector2<T>) {
         self.xy = xy;
-        self.e2 = xy[0] * xy[0] + xy[1] * xy[1];
-        self.kept = [T::ZERO; 2];
+        self.e2 = square(&xy);
+        self.kept = Vector2::zeros();
     }
 
     /// Returns the eccentricity ratio.
@@ -66,7 +68,7 @@ impl<T: Real> State<T> {
 
     /// Returns the position `eps cos(phi)` and `eps sin(phi)`.
     #[inline]
-    pub fn xy(&self) -> [T; 2] {
+    pub fn xy(&self) -> Vector2<T> {
         self.xy
     }
 

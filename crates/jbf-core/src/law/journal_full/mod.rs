@@ -53,13 +53,14 @@ mod state;
 
 pub use state::State;
 
-use super::journal::{Journal, Loaded, START_PHI_RAD};
+use super::journal::{square, Journal, Loaded, START_PHI_RAD};
 use super::Law;
 use crate::friction::Friction;
 use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
+use nalgebra::{Vector2, Vector4};
 
 /// Fractions at which a step is divided into three while the velocity relaxes to that of the film:
 /// at a start and after a jump of the load.
@@ -124,30 +125,32 @@ impl<T: Real> JournalFull<T> {
     ) {
         let film = FullFilm::held(self, &state.loaded, state.xy);
         let ub = speed_m_s.map(|u| u * self.film.inverse_u_tr);
-        let [vx, vy] = state.velocity;
-        let mut way = [state.kept[0], state.kept[1], vx, vy];
+        let (kept, velocity) = (state.kept, state.velocity);
+        let mut way = Vector4::new(kept.x, kept.y, velocity.x, velocity.y);
         stepper.step(&film, &mut way, ub, dt_s * rate * self.film.rate);
-        let [wx, wy, vx, vy] = way;
-        let xy = [state.xy[0] + wx, state.xy[1] + wy];
-        let e2 = xy[0] * xy[0] + xy[1] * xy[1];
-        let sound = e2.is_finite() && vx.is_finite() && vy.is_finite();
+        let xy = Vector2::new(state.xy.x + way.x, state.xy.y + way.y);
+        let e2 = square(&xy);
+        let sound = e2.is_finite() && way.z.is_finite() && way.w.is_finite();
         let limit = T::EPS_LIMIT;
         if sound && e2.value() <= (limit * limit).value() {
             // Compensated summation (Kahan 1965): the rounding error of this sum enters the next.
-            state.kept = [wx - (xy[0] - state.xy[0]), wy - (xy[1] - state.xy[1])];
+            // By components: assembling the vectors first takes more instructions.
+            state.kept.x = way.x - (xy.x - state.xy.x);
+            state.kept.y = way.y - (xy.y - state.xy.y);
             state.xy = xy;
-            state.velocity = [vx, vy];
+            state.velocity.x = way.z;
+            state.velocity.y = way.w;
             return;
         }
         // The step was too coarse. A step without finite values leaves the film unchanged; any
         // other is limited in its direction. The film adopts any velocity immediately, so the
         // velocity is reset.
         state.clamped = state.clamped.saturating_add(1);
-        state.velocity = [T::ZERO; 2];
+        state.velocity = Vector2::zeros();
         if sound {
             let shrink = self.film.deepest(&state.loaded) / e2.sqrt();
-            state.xy = [xy[0] * shrink, xy[1] * shrink];
-            state.kept = [T::ZERO; 2];
+            state.xy = xy * shrink;
+            state.kept = Vector2::zeros();
         }
     }
 
@@ -202,9 +205,8 @@ impl<T: Real> Law<T> for JournalFull<T> {
 
     #[inline]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
-        let [x, y] = state.xy;
         self.film
-            .sliding(&state.loaded, x * x + y * y, velocity_m_s)
+            .sliding(&state.loaded, square(&state.xy), velocity_m_s)
     }
 
     #[inline]

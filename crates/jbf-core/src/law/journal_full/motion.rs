@@ -9,6 +9,7 @@ use crate::law::journal::Loaded;
 use crate::real::Real;
 use crate::stepper::{Linear, SecondOrder, StiffSystem, System};
 use core::f64::consts::FRAC_PI_2;
+use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
 /// Equations of motion of the journal in its film, with inertia.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +22,7 @@ pub struct FullFilm<T> {
     ///
     /// The state is the displacement from this position, because single precision resolves it much
     /// better than the position.
-    from: [T; 2],
+    from: Vector2<T>,
     /// True if every stage is limited to the inside of the bearing, and asperity contact ends below
     /// eps_tr.
     held: bool,
@@ -29,7 +30,7 @@ pub struct FullFilm<T> {
 
 impl<T: Real> FullFilm<T> {
     /// Creates the equations of the law for a control loop: every stage of a step is finite.
-    pub(crate) fn held(law: &JournalFull<T>, loaded: &Loaded<T>, from: [T; 2]) -> Self {
+    pub(crate) fn held(law: &JournalFull<T>, loaded: &Loaded<T>, from: Vector2<T>) -> Self {
         Self {
             inverse_mass: law.inverse_mass_number,
             load_number: loaded.load_number,
@@ -48,13 +49,13 @@ impl<T: Real> FullFilm<T> {
         Self {
             k0: if touching { law.film.k0 } else { T::ZERO },
             held: false,
-            ..Self::held(law, loaded, [T::ZERO; 2])
+            ..Self::held(law, loaded, Vector2::zeros())
         }
     }
 
     #[inline]
-    fn polar(&self, state: &[T; 4]) -> Polar<T> {
-        let (x, y) = (self.from[0] + state[0], self.from[1] + state[1]);
+    fn polar(&self, state: &Vector4<T>) -> Polar<T> {
+        let (x, y) = (self.from.x + state.x, self.from.y + state.y);
         if self.held {
             return Polar::held(x, y);
         }
@@ -81,9 +82,9 @@ impl<T: Real> FullFilm<T> {
 
 impl<T: Real> System<T, 4> for FullFilm<T> {
     #[inline]
-    fn slope(&self, state: &[T; 4], ub: T) -> [T; 4] {
+    fn slope(&self, state: &Vector4<T>, ub: T) -> Vector4<T> {
         let at = self.polar(state);
-        let [_, _, vx, vy] = *state;
+        let (vx, vy) = (state.z, state.w);
         let (e, fb) = (at.e, self.load_number);
         let d = (T::ONE - e) * (T::ONE + e);
         let inverse_d = T::ONE / d;
@@ -97,8 +98,8 @@ impl<T: Real> System<T, 4> for FullFilm<T> {
         let touch = self.touch(e);
         let outward = fb * at.cos - self.k0 * touch * touch - j22 * radial - j12 * slip;
         let forward = -fb * at.sin - j12 * radial - j11 * slip;
-        let [ax, ay] = at.vector(outward * self.inverse_mass, forward * self.inverse_mass);
-        [vx, vy, ax, ay]
+        let a = at.vector(outward * self.inverse_mass, forward * self.inverse_mass);
+        Vector4::new(vx, vy, a.x, a.y)
     }
 }
 
@@ -109,9 +110,9 @@ impl<T: Real> StiffSystem<T, 4> for FullFilm<T> {
     ///
     /// For phi the velocity is held constant: `radial' = tangential velocity`, `slip' = -radial`.
     #[inline]
-    fn linearise(&self, state: &[T; 4], ub: T) -> Linear<T, 4> {
+    fn linearise(&self, state: &Vector4<T>, ub: T) -> Linear<T, 4> {
         let at = self.polar(state);
-        let [_, _, vx, vy] = *state;
+        let (vx, vy) = (state.z, state.w);
         let (e, fb, inverse_mass) = (at.e, self.load_number, self.inverse_mass);
         let FilmIntegrals { j11, j12, j22 } = FilmIntegrals::at(e);
         let inverse_d = T::ONE / ((T::ONE - e) * (T::ONE + e));
@@ -131,32 +132,28 @@ impl<T: Real> StiffSystem<T, 4> for FullFilm<T> {
         let outward_phi = -fb * at.sin - j22 * tangential + j12 * radial;
         let forward_phi = -fb * at.cos - j12 * tangential + j11 * radial;
 
-        let stiffness = at.turned([
-            [outward_e, (outward_phi - forward) * at.inverse_e],
-            [forward_e, (forward_phi + outward) * at.inverse_e],
-        ]);
-        let damping = at.turned([[-j22, -j12], [-j12, -j11]]);
-        let [ax, ay] = at.vector(outward * inverse_mass, forward * inverse_mass);
+        let stiffness = at.turned(Matrix2::new(
+            outward_e,
+            (outward_phi - forward) * at.inverse_e,
+            forward_e,
+            (forward_phi + outward) * at.inverse_e,
+        )) * inverse_mass;
+        let damping = at.turned(Matrix2::new(-j22, -j12, -j12, -j11)) * inverse_mass;
+        let a = at.vector(outward * inverse_mass, forward * inverse_mass);
         let drag = T::of(0.5) * e * inverse_mass;
-        let [ux, uy] = at.vector(j12 * drag, j11 * drag);
-        let row = |i: usize| {
-            [
-                stiffness[i][0] * inverse_mass,
-                stiffness[i][1] * inverse_mass,
-                damping[i][0] * inverse_mass,
-                damping[i][1] * inverse_mass,
-            ]
-        };
+        let by_input = at.vector(j12 * drag, j11 * drag);
         let (zero, one) = (T::ZERO, T::ONE);
+        let (k, d) = (stiffness, damping);
         Linear {
-            slope: [vx, vy, ax, ay],
-            jacobian: [
-                [zero, zero, one, zero],
-                [zero, zero, zero, one],
-                row(0),
-                row(1),
-            ],
-            by_input: [zero, zero, ux, uy],
+            slope: Vector4::new(vx, vy, a.x, a.y),
+            #[rustfmt::skip]
+            jacobian: Matrix4::new(
+                zero, zero, one, zero,
+                zero, zero, zero, one,
+                k.m11, k.m12, d.m11, d.m12,
+                k.m21, k.m22, d.m21, d.m22,
+            ),
+            by_input: Vector4::new(zero, zero, by_input.x, by_input.y),
         }
     }
 }

@@ -1,16 +1,17 @@
 //! State of the journal law with inertia.
 
-use crate::law::journal::Loaded;
+use crate::law::journal::{square, Loaded};
 use crate::real::Real;
+use nalgebra::Vector2;
 
 /// Position and velocity of the journal centre, under the present load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
-    pub(super) xy: [T; 2],
+    pub(super) xy: Vector2<T>,
     /// Accumulated rounding error of `xy`.
-    pub(super) kept: [T; 2],
+    pub(super) kept: Vector2<T>,
     /// Derivative of `xy` with respect to dimensionless time.
-    pub(super) velocity: [T; 2],
+    pub(super) velocity: Vector2<T>,
     pub(super) loaded: Loaded<T>,
     /// True if the velocity has not yet relaxed under the present load; the next step must resolve
     /// the relaxation.
@@ -24,9 +25,9 @@ impl<T: Real> State<T> {
     /// Creates the state at rest at a given eccentricity ratio and attitude angle (rad).
     pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
         Self {
-            xy: [eps * phi_rad.cos(), eps * phi_rad.sin()],
-            kept: [T::ZERO; 2],
-            velocity: [T::ZERO; 2],
+            xy: Vector2::new(phi_rad.cos(), phi_rad.sin()) * eps,
+            kept: Vector2::zeros(),
+            velocity: Vector2::zeros(),
             loaded,
             fresh: true,
             clamped: 0,
@@ -36,18 +37,18 @@ impl<T: Real> State<T> {
     /// Returns the eccentricity ratio.
     #[inline]
     pub fn eps(&self) -> T {
-        (self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]).sqrt()
+        square(&self.xy).sqrt()
     }
 
     /// Returns the position `eps cos(phi)` and `eps sin(phi)`.
     #[inline]
-    pub fn xy(&self) -> [T; 2] {
+    pub fn xy(&self) -> Vector2<T> {
         self.xy
     }
 
     /// Returns the derivative of the position with respect to dimensionless time.
     #[inline]
-    pub fn velocity(&self) -> [T; 2] {
+    pub fn velocity(&self) -> Vector2<T> {
         self.velocity
     }
 

@@ -26,7 +26,8 @@ export class ImportForm {
     // Answers that are not applied yet are sent again with the next one.
     this.waiting = form ? { ...form, rig: { ...this.waiting?.rig, ...form.rig }, rate_hz: form.rate_hz ?? this.waiting?.rate_hz ?? null } : null;
     if (form) this.form = { ...this.form, rows: [...form.rows, ...this.form.rows.filter((row) => row.column === undefined && !form.rows.some((r) => r.key === row.key))] };
-    const answer = await this.page.do("try", { files: this.files, map: this.text, form: this.waiting });
+    // An error of a request that was replaced by a later one is out of date.
+    const answer = await this.page.do("try", { files: this.files, map: this.text, form: this.waiting }, () => request === this.requests);
     if (request !== this.requests) return;
     this.waiting = null;
     if (answer) { this.text = answer.map; this.form = answer.form; this.answer = answer; this.points = answer.open; }

@@ -83,9 +83,9 @@ class Page {
     place("message").textContent = words; place("message").className = kind;
   }
 
-  // Ask the server to do something; an error is shown.
-  async do(name, asked = {}) {
-    try { this.say("", ""); return await post(name, asked); } catch (error) { this.failed(error); return null; }
+  // Ask the server to do something; an error is shown while `current()` holds.
+  async do(name, asked = {}, current = () => true) {
+    try { this.say("", ""); return await post(name, asked); } catch (error) { if (current()) this.failed(error); return null; }
   }
 
   // Data for a plot of one run and model. An error is not shown if the session has changed meanwhile:
@@ -108,7 +108,7 @@ class Page {
     try { await download(what, file); } catch (error) { this.failed(error); }
   }
 
-  failed(error) { if (error.name === "AbortError") this.say("Cancelled.", "done"); else this.say(error.message); }
+  failed(error) { if (error.name === "AbortError" || error.message === "the reading was cancelled") this.say("Cancelled.", "done"); else this.say(error.message); }
 
   // What is looked at has changed.
   look(changes) {

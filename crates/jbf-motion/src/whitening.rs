@@ -73,7 +73,7 @@ impl<const N: usize> ErrorChain<N> {
     ///
     /// # Arguments
     /// * `sensitivity`: s, derivatives of the prediction with respect to position, velocity and
-    ///   acceleration, (n,).
+    ///   acceleration, for each of n instants; in units of the residual per unit of each.
     /// * `variance`: of e, (n,); a sample with an infinite variance is excluded and set to zero.
     /// * `columns`: n rows of `width` values, for instance the residual and its derivatives with
     ///   respect to parameters; each column is filtered in the same way.

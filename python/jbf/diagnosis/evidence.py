@@ -43,7 +43,7 @@ def evidence(
         but not of this effect, and is otherwise reduced.
     """
     gain = likelihood_gain(richer, simpler)
-    if gain > 0.0 and _within_steps(candidates.campaign, richer, simpler):
+    if gain > 0.0 and _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
         gain = 0.0
     if gain > 0.0:
         gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
@@ -66,7 +66,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     """
     if set(candidates.idle(richer)) - set(simpler.effects):
         return 0.0
-    if _within_steps(candidates.campaign, richer, simpler):
+    if _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
         return 0.0
     if _filters_motion(candidates, richer, simpler):
         return 0.0
@@ -87,7 +87,9 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
     return bool(explained < share * samples.rms(simpler.residuals) ** 2)
 
 
-def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
+def _differ_by_less_than_quantisation(
+    campaign: Campaign, richer: Solution, simpler: Solution
+) -> bool:
     """Whether two models differ by less (RMS) than the quantisation error of the force."""
     samples = common_samples(richer.samples, simpler.samples)
     differences = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
@@ -95,10 +97,10 @@ def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bo
 
 
 def explains_less(candidates: Candidates, richer: Solution, other: Solution) -> bool:
-    """Whether a model with at least as many parameters as another leaves a larger RMS.
+    """Whether, with an uncertain motion, a model has no fewer parameters and a larger RMS.
 
-    Where the errors of the motion dominate the residual, their covariance is estimated with one of
-    the models, and a larger likelihood alone does not decide between two models.
+    False unless the errors of the motion are a large part of the residual. Their covariance is then
+    estimated with one of the models, so that a larger likelihood alone does not decide.
     """
     if not candidates.campaign.motion_uncertain or richer.free < other.free:
         return False

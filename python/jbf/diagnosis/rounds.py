@@ -200,6 +200,7 @@ def _grown(candidates: Candidates, present: Names, trial_round: Round) -> Names:
     """
     tied = [t.effect for t in trial_round.trials if t.outcome == "ties"]
     models: list[Names] = []
+    # Without other effects, no candidate makes one unnecessary.
     for name in (trial_round.leader, *tied) if present else (trial_round.leader,):
         assert name is not None
         candidates.search_peaks((*present, name))

@@ -136,11 +136,10 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
                 unconfirmed.add(name)
         elif gain > 0 and _has_larger_rms(candidate, least, policy):
             outcome, reason = "rejected", f"leaves an RMS of {rms:.3g} {unit}, more than {leader}"
-        elif gain > 0 and (
-            gain > best - policy.selection.tie
-            or explains_less(candidates, leading, candidate.solution)
-        ):
+        elif gain > max(0.0, best - policy.selection.tie):
             outcome, reason = "ties", f"fits as well as {leader}"
+        elif gain > 0 and explains_less(candidates, leading, candidate.solution):
+            outcome, reason = "ties", f"leaves less than {leader}, with no more parameters"
         elif gain > 0:
             outcome = "rejected"
             reason = f"evidence is {best - gain:.0f} below that of {leader}"

@@ -73,10 +73,18 @@ class ErrorsInMotion:
 
         Parameters
         ----------
+        residuals, jacobian
+            Residuals (n,) and their derivatives (n, k), one array per run, in the unit of the
+            force.
         weights
             Weight of each sample, 0 to 1; samples without weight are excluded.
         selection
             Indices of the runs to use; None for all runs.
+
+        Returns
+        -------
+        tuple
+            Residuals (m,) and Jacobian (m, k) of the samples with a weight, all runs in one array.
         """
         runs = list(range(len(residuals)) if selection is None else selection)
         columns = []

@@ -195,7 +195,7 @@ def _iterated(
     delays = delays and first.campaign.force_has_clock
     if late_s != 0.0:
         problem = delayed(first, late_s)
-        solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
+        solution = _near(problem, solution)
     for _ in range(ROUNDS):
         motion = estimate_motion_errors(problem, solution)
         share = motion.mean_share(solution.samples.weight)
@@ -207,8 +207,7 @@ def _iterated(
         if step_s != 0.0:
             late_s += step_s
             problem = delayed(first, late_s)
-            values = solution.values
-            solution = problem.solution(values, problem.samples_at(values), WHITE)
+            solution = _near(problem, solution)
             motion = estimate_motion_errors(problem, solution)
         before, solution = solution, _fitted(problem, solution, motion, delayed=late_s != clock_s)
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]

@@ -278,7 +278,7 @@ def swings(velocity_noise: float = 0.0) -> Candidates:
 def test_unexplained_part_of_a_change_by_a_rival_is_a_regression_residual() -> None:
     at_hand = PresentRuns(swings(), ())
     random = np.random.default_rng(5)
-    changes = [0.02 * random.standard_normal((len(f), 2)) for f in at_hand.now]
+    changes = [0.02 * random.standard_normal((len(f), 2)) for f in at_hand.prediction]
     mixed = [c @ np.array([[0.6], [0.8]]) for c in changes]
     own = Change(mixed, None, at_hand.unexplained(mixed))
     first = [c[:, :1] for c in changes]
@@ -294,7 +294,7 @@ def test_unexplained_part_of_a_change_by_a_rival_is_a_regression_residual() -> N
 def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None:
     """A rival without weight in the second half is compared only in the first half."""
     at_hand = PresentRuns(swings(), ())
-    lengths = [len(f) for f in at_hand.now]
+    lengths = [len(f) for f in at_hand.prediction]
     random = np.random.default_rng(5)
     everywhere = [random.standard_normal((n, 1)) for n in lengths]
     first_half = [(np.arange(n) < n // 2).astype(float) for n in lengths]

@@ -85,7 +85,9 @@ def test_friction_change_by_a_linear_effect_is_proportional_to_its_strength(
 def test_unexplained_part_of_a_change_is_its_residual_in_a_regression_on_the_law(
     candidates: Candidates, at_hand: PresentRuns
 ) -> None:
-    changes = [np.sin(3.0 * np.arange(len(f))) + 0.3 * np.sign(f) + 0.02 * f for f in at_hand.now]
+    changes = [
+        np.sin(3.0 * np.arange(len(f))) + 0.3 * np.sign(f) + 0.02 * f for f in at_hand.prediction
+    ]
     v = np.concatenate([p.motion.velocity for p in candidates.campaign.prepared])
     counted = np.concatenate(at_hand.samples.counted)
     x, y = np.column_stack([np.sign(v), v])[counted], np.concatenate(changes)[counted]
@@ -108,7 +110,7 @@ def test_weight_of_samples_next_to_jumps_is_reduced_if_an_effect_moves_the_jumps
     reversals = np.flatnonzero(np.diff(np.sign(v)))
     assert all(np.min(share[k - 1 : k + 4]) < 1.0 for k in reversals[1:])
     assert np.mean(share == 1.0) > 0.8
-    difference = model.problem.predict(model.values(1.0))[0] - at_hand.now[0]
+    difference = model.problem.predict(model.values(1.0))[0] - at_hand.prediction[0]
     assert change == pytest.approx(difference * share)
 
 
@@ -123,7 +125,7 @@ def test_gain_of_a_fast_change_in_white_noise_counts_in_full(at_hand: PresentRun
 
 
 def waves(at_hand: PresentRuns, size: float, rate: float) -> list[Array]:
-    return [size * np.sin(rate * np.arange(len(f)) + i) for i, f in enumerate(at_hand.now)]
+    return [size * np.sin(rate * np.arange(len(f)) + i) for i, f in enumerate(at_hand.prediction)]
 
 
 @pytest.mark.parametrize(("size", "rate"), [(0.05, 0.03), (0.08, 0.3), (0.2, 3.0)])
@@ -131,7 +133,7 @@ def test_share_of_a_change_not_absorbed_by_noise_is_a_likelihood_ratio(
     candidates: Candidates, at_hand: PresentRuns, size: float, rate: float
 ) -> None:
     """Loss of likelihood with the re-estimated noise, relative to that with the previous noise."""
-    signs = [np.sign(f) for f in at_hand.now]
+    signs = [np.sign(f) for f in at_hand.prediction]
     velocities = [p.motion.velocity for p in candidates.campaign.prepared]
     designs = [np.column_stack(columns) for columns in zip(signs, velocities, strict=True)]
     changes = [w + 0.1 * s for w, s in zip(waves(at_hand, size, rate), signs, strict=True)]

@@ -6,8 +6,8 @@ non-centrality of the likelihood ratio (Wald 1943). The power of the test is the
 the likelihood ratio exceeds the threshold. The part that another effect can also reproduce does not
 help to distinguish the two.
 
-The change is evaluated at each strength and not extrapolated from the null; the rest of the model
-is linearised.
+The change is computed at strengths of ratio 2^(1/3) and scaled between them, not extrapolated from
+the null; the rest of the model is linearised.
 
 Modules: `strength` computes the change of the friction by an effect as a function of its strength.
 `distinction` compares this change with those of other effects. `detection_limits` computes the

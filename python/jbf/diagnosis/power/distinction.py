@@ -65,9 +65,9 @@ class Change:
     Attributes
     ----------
     columns
-        Change in N, one (n, 2 + k) array per run. The columns are the change, the change at
-        `FURTHER` times the strength, and the derivative with respect to each parameter. Samples
-        next to jumps that the effect moves are scaled by their weights.
+        Change in the unit of the force, one (n, 2 + k) array per run. The columns are the change,
+        the change at `FURTHER` times the strength, and the derivative with respect to each
+        parameter. Samples next to jumps that the effect moves are scaled by their weights.
     shares
         Weights of the samples, one (n,) array per run; None if the effect does not change them.
     unexplained
@@ -82,11 +82,9 @@ class Change:
     def of(cls, runs: PresentRuns, model: Strength, times: float) -> Change:
         """Compute the change of the friction by an effect at a multiple of its typical strength."""
         shares, change = runs.shares(model, times), runs.change(model, times)
+        slopes = runs.slopes_of(model, times)
         further = runs.change(model, FURTHER * times)
-        columns = [
-            np.column_stack(parts)
-            for parts in zip(change, further, runs.slopes_of(model, times), strict=True)
-        ]
+        columns = [np.column_stack(parts) for parts in zip(change, further, slopes, strict=True)]
         return cls(columns, shares, runs.unexplained(columns))
 
     @cached_property

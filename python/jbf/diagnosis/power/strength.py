@@ -29,7 +29,7 @@ STRENGTH_RATIO = 2.0 ** (1.0 / 3.0)
 Between them a change is taken as proportional to the strength; where it is not, its error is that
 of a change of the strength by at most 12 %. It is a numerical resolution and enters no verdict.
 """
-HELD_SAMPLES = 100_000
+CACHED_SAMPLES = 100_000
 """Number of samples, over all strengths of an effect, whose changes are kept for further use.
 
 At least one change is kept. It limits the memory only.
@@ -93,9 +93,11 @@ class _AtStrength:
     Attributes
     ----------
     change, shares
-        Change, N, and relative sample weights (None if they do not change), one array per run.
+        Change, in the unit of the force, and relative sample weights (None if they do not change),
+        one array per run.
     slopes
-        Derivatives by the parameters of the effect, one (n, k) array per run; None until needed.
+        Derivatives with respect to the parameters of the effect, one (n, k) array per run; None
+        until needed.
     """
 
     change: list[Array]
@@ -124,17 +126,17 @@ class PresentRuns:
         more = self.base.samples.count / max(samples.count, 1)
         level = float(r @ r) / max(len(r), 1) / max(effective_share(solution), 1e-3)
         self.scale = np.sqrt(more / max(level, 1e-300))
-        self.now = self.problem.predict(self.base.values)
+        self.prediction = self.problem.predict(self.base.values)
         size = np.linalg.norm(self.slopes, axis=0)
         normalised = self.slopes[:, size > 0.0] / size[size > 0.0]
         self.tangent: Array = np.asarray(np.linalg.qr(normalised)[0])
-        self.friction = self.samples.rms(self.now)
+        self.friction = self.samples.rms(self.prediction)
         # The last computed changes, by effect and exponent of `STRENGTH_RATIO`.
         self._computed: dict[str, dict[int, _AtStrength]] = {}
-        self._most_held = max(HELD_SAMPLES // max(sum(len(f) for f in self.now), 1), 1)
+        self._most_cached = max(CACHED_SAMPLES // max(sum(len(f) for f in self.prediction), 1), 1)
 
     def change(self, model: Strength, times: float) -> list[Array]:
-        """Change of the friction by an effect, N, one array per run; zero at excluded samples.
+        """Change of the friction by an effect, one array per run; zero at excluded samples.
 
         It is scaled from the nearest strength at which it is computed.
         """
@@ -151,7 +153,7 @@ class PresentRuns:
         return self._nearest(model, times)[1].shares
 
     def slopes_of(self, model: Strength, times: float) -> list[Array]:
-        """Derivatives of the friction with respect to the parameters of an effect, N per unit.
+        """Derivatives of the friction with respect to the parameters of an effect.
 
         The result has one (n, k) array per run. Samples are scaled by their weights (`shares`).
         """
@@ -170,7 +172,7 @@ class PresentRuns:
         exponent = round(float(np.log(times) / np.log(STRENGTH_RATIO)))
         computed = self._computed.setdefault(model.name, {})
         if exponent not in computed:
-            if len(computed) >= self._most_held:
+            if len(computed) >= self._most_cached:
                 del computed[next(iter(computed))]
             computed[exponent] = self._changed(model, STRENGTH_RATIO**exponent)
         return exponent, computed[exponent]
@@ -180,7 +182,9 @@ class PresentRuns:
         problem = model.problem.thinned
         values = model.values(times)
         residuals, prepared = problem.residuals(values), problem.campaign.prepared
-        gaps = [p.friction - r - f for p, r, f in zip(prepared, residuals, self.now, strict=True)]
+        gaps = [
+            p.friction - r - f for p, r, f in zip(prepared, residuals, self.prediction, strict=True)
+        ]
         samples = common_samples(problem.samples_at(values, residuals), self.samples)
         if samples is self.samples:
             return _AtStrength(gaps, None)
@@ -197,7 +201,7 @@ class PresentRuns:
         Parameters
         ----------
         changes
-            Changes of the friction, N, one (n,) or (n, k) array per run.
+            Changes of the friction, in the unit of the force, one (n,) or (n, k) array per run.
         """
         columns = [c if c.ndim == 2 else c[:, None] for c in changes]
         empty = [np.zeros(len(c)) for c in columns]

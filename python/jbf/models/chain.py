@@ -90,6 +90,7 @@ def check_rig(rig: Rig, law: str) -> None:
 
 def default_law(rig: Rig) -> str:
     """Law that a fit uses if none is named: `journal` for a bearing, `coulomb` for a drive."""
+    the_rig(rig)
     return "journal" if rig.drive is None else "coulomb"
 
 

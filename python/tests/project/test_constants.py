@@ -58,6 +58,7 @@ NUMERICAL = {
     "limits computing time or memory; an exceeded budget is reported": """
         diagnosis.candidates: RANKING_EVALUATIONS
         diagnosis.power.detection_limits: MOST_STRENGTHS MOST_ITERATIONS
+        diagnosis.power.strength: CACHED_SAMPLES
         diagnosis.terms.proposal: EVALUATIONS
         estimation.parallel_fits: MOST_AT_ONCE
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
@@ -80,6 +81,7 @@ NUMERICAL = {
     """,
     "resolution of a grid, a derivative or a number of draws": """
         diagnosis.level: DRAWS
+        diagnosis.power.strength: STRENGTH_RATIO
         diagnosis.residual_structure.periodic: MOST_BINS PADDING
         estimation.delays: FINE_S
         estimation.delay_scan: COARSE FINE

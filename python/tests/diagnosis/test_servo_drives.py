@@ -38,6 +38,7 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
         pytest.param(4030, {"inertia"}, id="saturated steps, command"),
         pytest.param(4032, {"inertia", "gravity"}, id="swinging, position alone"),
         pytest.param(4612, {"sensor_offset", "inertia"}, id="hand, stamps at arrival"),
+        pytest.param(4816, {"inertia"}, id="point to point, command without noise"),
     ],
 )
 def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) -> None:

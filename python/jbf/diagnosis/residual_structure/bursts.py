@@ -53,6 +53,10 @@ def find_bursts(
     # In a record without noise, half of the innovations are zero.
     sizes = np.abs(flat)
     sigma = max(float(np.median(sizes)) / 0.6745, NO_NOISE * float(np.max(sizes)))
+    if samples.motion is not None:
+        # The noise of a drive's force is at least a share of the force (`min_noise_share`).
+        least = samples.settings.motion.min_noise_share
+        sigma = max(sigma, least * samples.rms([p.friction for p in prepared]))
     if sigma == 0.0:
         return []
     large = flat[sizes > policy.bursts.min_sigma * sigma]

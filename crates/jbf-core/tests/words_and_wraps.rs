@@ -8,7 +8,7 @@ use jbf_core::compensator::learning::Learned;
 use jbf_core::compensator::table::{Axis, Table};
 use jbf_core::compensator::{Compensator, Sense};
 use jbf_core::law::Law;
-use jbf_core::page::{Bound, Start};
+use jbf_core::parameter::{Bound, Start};
 use jbf_core::run::read_force;
 use jbf_core::{Friction, Motion};
 

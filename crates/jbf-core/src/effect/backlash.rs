@@ -15,8 +15,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::motion::{crossing, JournalMotion, Motion};
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Backlash in the drive: a gap between two flanks.

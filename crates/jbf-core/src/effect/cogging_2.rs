@@ -9,9 +9,9 @@
 use super::cogging::Cogging;
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Second cogging force that is periodic in the position.

@@ -16,8 +16,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Resistance, Rig, Stage};
+use crate::described::described;
 use crate::motion::{sag, JournalMotion, Motion};
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Largest number of integration steps per step of the chain.

@@ -8,9 +8,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Dry friction that depends on the recorded temperature.

@@ -7,8 +7,8 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Factor on the rate of the film dynamics.

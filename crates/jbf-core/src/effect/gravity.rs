@@ -8,9 +8,10 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -5,7 +5,7 @@ use super::need::Need;
 use super::Effect;
 use crate::error::ParameterError;
 use crate::law;
-use crate::page::{in_bounds, Parameter};
+use crate::parameter::{in_bounds, Parameter};
 use crate::real::Real;
 use core::fmt;
 
@@ -145,8 +145,8 @@ impl Info {
     }
 
     /// Sets the descriptions of the parameters, in the order of their values.
-    pub(crate) const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
-        self.parameters = pages;
+    pub(crate) const fn parameters(mut self, parameters: &'static [Parameter]) -> Self {
+        self.parameters = parameters;
         self
     }
 

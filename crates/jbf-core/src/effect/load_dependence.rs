@@ -13,8 +13,8 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Scales, Stage};
+use crate::described::described;
 use crate::motion::Motion;
-use crate::page::described;
 use crate::real::Real;
 
 /// Limit of the power law: load ratios above this value or below its inverse are replaced by the

@@ -9,9 +9,9 @@
 use super::pitch_ripple::PitchRipple;
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Friction that is periodic in the position with a second pitch.

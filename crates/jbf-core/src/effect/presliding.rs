@@ -12,9 +12,10 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::law::bristle::bent;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::path::legs;
 use crate::real::Real;
 

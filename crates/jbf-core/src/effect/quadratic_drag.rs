@@ -5,9 +5,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Drag that is proportional to the square of the speed.

@@ -4,8 +4,8 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
+use crate::described::described;
 use crate::motion::Motion;
-use crate::page::described;
 use crate::real::Real;
 
 /// Drift of the zero of a load cell at a constant rate.

@@ -21,8 +21,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
+use crate::described::described;
 use crate::motion::Motion;
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Hysteresis of a load cell, from play or friction in the force path.

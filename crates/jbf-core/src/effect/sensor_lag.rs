@@ -4,8 +4,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
+use crate::described::described;
 use crate::motion::Motion;
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 use crate::relaxation::relax;
 

@@ -13,8 +13,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
+use crate::described::described;
 use crate::motion::Motion;
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Largest relative error of a reading, a limit that keeps the reading finite.

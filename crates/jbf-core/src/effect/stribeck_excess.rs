@@ -6,9 +6,10 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Friction at low speed in addition to that of the law.

@@ -11,8 +11,9 @@
 use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
 use crate::delay_line::DelayLine;
+use crate::described::described;
 use crate::motion::Motion;
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Time delay of the recorded force relative to the recorded motion.

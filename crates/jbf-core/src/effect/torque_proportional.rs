@@ -20,9 +20,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::Motion;
-use crate::page::described;
 use crate::real::Real;
 
 /// Friction proportional to the force that the transmission carries.

@@ -6,9 +6,9 @@
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Viscous friction proportional to the load, in addition to that of the law.

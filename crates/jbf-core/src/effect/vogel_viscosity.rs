@@ -11,8 +11,8 @@
 use super::registry::named_effect;
 use super::vogel::Vogel;
 use super::{Effect, Info, Need, Rig, Stage};
+use crate::described::described;
 use crate::motion::{JournalMotion, Motion};
-use crate::page::described;
 use crate::real::Real;
 
 /// Viscosity that depends on the recorded temperature.

@@ -4,7 +4,7 @@ use super::Law;
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
-use crate::page::{in_bounds, Parameter};
+use crate::parameter::{in_bounds, Parameter};
 use crate::real::Real;
 
 /// Description of a law in the catalogue.
@@ -95,8 +95,8 @@ impl Info {
     }
 
     /// Sets the descriptions of the parameters, in the order of their values.
-    pub(crate) const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
-        self.parameters = pages;
+    pub(crate) const fn parameters(mut self, parameters: &'static [Parameter]) -> Self {
+        self.parameters = parameters;
         self
     }
 

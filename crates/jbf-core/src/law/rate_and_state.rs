@@ -49,9 +49,10 @@
 use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
+use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Smallest and largest age of a contact, s; the limits prevent an overflow in single precision.

@@ -34,10 +34,11 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::delay_line::DelayLine;
+use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::page::{described, Start};
+use crate::parameter::Start;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 

@@ -21,9 +21,9 @@
 use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
+use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
-use crate::page::described;
 use crate::real::Real;
 
 /// Law with a Stribeck curve and without memory.

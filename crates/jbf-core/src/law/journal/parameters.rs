@@ -3,8 +3,9 @@
 
 #[cfg(doc)]
 use super::Journal;
+use crate::described::described;
 use crate::error::{check, positive, ParameterError};
-use crate::page::{described, Bound};
+use crate::parameter::Bound;
 
 /// Physical meaning of the journal law for the catalogue, in one line.
 pub(in crate::law) const SUMMARY: &str =

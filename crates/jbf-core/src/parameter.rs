@@ -240,18 +240,18 @@ impl Parameter {
 /// value.
 ///
 /// The function can check constants at compile time.
-pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
-    if pages.len() != values.len() {
+pub(crate) const fn values_fit(parameters: &[Parameter], values: &[f64]) -> bool {
+    if parameters.len() != values.len() {
         return false;
     }
     let mut i = 0;
     while i < values.len() {
-        let (page, value) = (&pages[i], values[i]);
-        let at_null = match page.null {
+        let (parameter, value) = (&parameters[i], values[i]);
+        let at_null = match parameter.null {
             Some(null) => value == null,
             None => false,
         };
-        let within = at_null || (value >= page.lower && value <= page.upper);
+        let within = at_null || (value >= parameter.lower && value <= parameter.upper);
         if !within {
             return false;
         }
@@ -261,7 +261,7 @@ pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
 }
 
 /// Returns true if two names are equal apart from the case of letters; usable at compile time.
-pub(crate) const fn same(a: &str, b: &str) -> bool {
+pub(crate) const fn equal_ignoring_case(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     if a.len() != b.len() {
         return false;
@@ -282,8 +282,11 @@ pub(crate) const fn same(a: &str, b: &str) -> bool {
 ///
 /// # Errors
 /// Reports the first value that is missing or out of bounds.
-pub(crate) fn in_bounds<T: Real>(pages: &[Parameter], values: &[T]) -> Result<(), ParameterError> {
-    for (i, p) in pages.iter().enumerate() {
+pub(crate) fn in_bounds<T: Real>(
+    parameters: &[Parameter],
+    values: &[T],
+) -> Result<(), ParameterError> {
+    for (i, p) in parameters.iter().enumerate() {
         let value = given(values, i, p.name)?.value();
         if p.null != Some(value) {
             within(p.name, value, [p.lower, p.upper])?;
@@ -296,192 +299,32 @@ pub(crate) fn in_bounds<T: Real>(pages: &[Parameter], values: &[T]) -> Result<()
 ///
 /// A parameter has the value without effect where there is a finite one, and otherwise the first
 /// start value of a fit.
-pub(crate) fn defaults<const N: usize>(pages: &[Parameter; N]) -> [f64; N] {
-    pages.each_ref().map(|page| match page.null {
+pub(crate) fn defaults<const N: usize>(parameters: &[Parameter; N]) -> [f64; N] {
+    parameters.each_ref().map(|parameter| match parameter.null {
         Some(null) if null.is_finite() => null,
-        _ => page.starts[0],
+        _ => parameter.starts[0],
     })
 }
 
-/// Returns as many values as there are parameters, each checked against its bounds.
+/// Returns the values, one per parameter, each checked against its bounds.
 ///
 /// # Errors
 /// Reports the first value that is missing, out of its bounds, or infinite where the effect
-/// vanishes: the effect must be omitted in this case.
+/// vanishes (the effect must be omitted in this case), or more values than parameters.
 pub(crate) fn checked<T: Real, const N: usize>(
-    pages: &[Parameter; N],
+    parameters: &[Parameter; N],
     values: &[T],
 ) -> Result<[T; N], ParameterError> {
-    for (page, value) in pages.iter().zip(values) {
-        let infinite = page.null.is_some_and(|null| !null.is_finite());
+    for (parameter, value) in parameters.iter().zip(values) {
+        let infinite = parameter.null.is_some_and(|null| !null.is_finite());
         check(
-            !infinite || page.null != Some(value.value()),
-            page.name,
+            !infinite || parameter.null != Some(value.value()),
+            parameter.name,
             value.value(),
             "is the value at which the effect vanishes: omit the effect",
         )?;
     }
-    in_bounds(pages, values)?;
+    in_bounds(parameters, values)?;
     let values = values.first_chunk();
     needed("parameters", values.copied())
 }
-
-/// Describes a law or an effect for the catalogue, together with its parameters.
-///
-/// The macro is the only place in which the names, units, meanings and bounds of the parameters are
-/// written. From them it generates the struct `Parameters` with its documentation and default, the
-/// constant `PARAMETERS`, and the constructor `new`. The first word is the macro that implements the
-/// trait of the catalogue, `named_law` or `named_effect`.
-///
-/// The type needs a method `with_parameters(Parameters<T>) -> Self`, which receives checked values.
-///
-/// ```ignore
-/// described! {
-///     named_effect CoulombDrag = Info::new("coulomb_drag", Stage::Other).summary("...");
-///     f_d = "F_d", "N", "drag force per bearing", [0.0, 1e4], [0.5] null(0.0) .start(Start::Drag);
-/// }
-/// ```
-///
-/// Each line has the field, the name in files, the unit, the meaning, the bounds, the start values
-/// of a fit, the value without effect if there is one, and calls of the methods of [`Parameter`].
-/// The field is the name in files in lower case, which is checked at compile time. Parameters that
-/// several laws or effects have in common, such as `F_c;`, are written as their name.
-macro_rules! described {
-    // Parameters in common, replaced by their full lines.
-    (@ $O:tt $i:tt [$($d:tt)*] F_c; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        f_c = "F_c", "N", "Coulomb (kinetic) friction", [1e-6, 1e7], [10.0]
-            .log().start($crate::page::Start::Kinetic);
-    ] $($r)* } };
-    (@ $O:tt $i:tt [$($d:tt)*] F_s; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        f_s = "F_s", "N", "static (breakaway) friction", [1e-6, 1e7], [12.0]
-            .log().start($crate::page::Start::Breakaway);
-    ] $($r)* } };
-    (@ $O:tt $i:tt [$($d:tt)*] F_v; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        f_v = "F_v", "N s/m", "viscous friction", [0.0, 1e7], [10.0]
-            .start($crate::page::Start::Viscous);
-    ] $($r)* } };
-    (@ $O:tt $i:tt [$($d:tt)*] v_s; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        v_s = "v_s", "m/s", "Stribeck speed: scale of the decrease of friction", [1e-7, 1e3],
-            [0.01, 0.1] .log().start($crate::page::Start::StribeckSpeed);
-    ] $($r)* } };
-    (@ $O:tt $i:tt [$($d:tt)*] phase_rad; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        phase_rad = "phase_rad", "rad", "phase at position zero", [-4.0 * PI, 4.0 * PI],
-            [0.0, FRAC_PI_2, PI, -FRAC_PI_2] .period(TAU).signed();
-    ] $($r)* } };
-    (@ $O:tt $i:tt [$($d:tt)*] C_c; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        c_c = "C_c", "C", "Vogel's C: -95 for mineral oils", [-250.0, -60.0], [-95.0] .stated();
-    ] $($r)* } };
-    (@ $O:tt $i:tt [$($d:tt)*] T_0_c; $($r:tt)*) => { $crate::page::described! { @ $O $i [$($d)*
-        t_0_c = "T_0_c", "C", "reference temperature, at which the law's parameters hold",
-            [-100.0, 1000.0], [40.0]
-            .start($crate::page::Start::ReferenceTemperature).stated();
-    ] $($r)* } };
-    // A full line is kept.
-    (@ $O:tt $i:tt [$($d:tt)*]
-        $field:ident = $name:literal, $unit:literal, $meaning:literal, $bounds:tt, $starts:tt
-            $(null $null:tt)? $(.$method:ident $argument:tt)*; $($r:tt)*
-    ) => { $crate::page::described! { @ $O $i [$($d)*
-        $field = $name, $unit, $meaning, $bounds, $starts $(null $null)? $(.$method $argument)*;
-    ] $($r)* } };
-
-    // All lines are complete.
-    (@ [$kind:ident $Owner:ident] $info:tt [$(
-        $field:ident = $name:literal, $unit:literal, $meaning:literal, [$lower:expr, $upper:expr],
-            [$($start:expr),+] $(null($null:expr))? $(.$method:ident($($argument:tt)*))*;
-    )*]) => {
-        #[doc = concat!("Parameters of [`", stringify!($Owner), "`].")]
-        ///
-        /// The default of a parameter is the value without effect, or otherwise its usual value.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct Parameters<T> {
-            $(
-                #[doc = concat!(
-                    "`", $name, "`, ", $unit, ": ", $meaning, ".\n\nFrom ", stringify!($lower),
-                    " to ", stringify!($upper), $("; no effect at ", stringify!($null),)?
-                    "; usual values ", stringify!($($start),+), "."
-                )]
-                pub $field: T,
-            )*
-        }
-
-        /// Descriptions of the parameters, in the order of their values.
-        pub(crate) const PARAMETERS: &[$crate::page::Parameter; [$($name),*].len()] = &[$({
-            assert!(
-                $crate::page::same($name, stringify!($field)),
-                "the field of a parameter is its name in lower case"
-            );
-            $crate::page::Parameter::new($name, $unit, $meaning, [$lower, $upper], &[$($start),+])
-                $(.null($null))? $(.$method($($argument)*))*
-        }),*];
-
-        // The journal laws have checks of their own.
-        #[allow(dead_code)]
-        impl<T: $crate::real::Real> Parameters<T> {
-            /// Creates the parameters from their values in the order of the catalogue.
-            pub(crate) fn of(values: &[T]) -> Result<Self, $crate::error::ParameterError> {
-                let [$($field),*] = $crate::page::checked(PARAMETERS, values)?;
-                Ok(Self { $($field),* })
-            }
-
-            /// Returns the parameters if every one is within its bounds.
-            pub(crate) fn checked(self) -> Result<Self, $crate::error::ParameterError> {
-                Self::of(&[$(self.$field),*])
-            }
-
-            /// Converts to another number type, without derivatives.
-            #[must_use]
-            pub fn cast<U: $crate::real::Real>(&self) -> Parameters<U> {
-                Parameters { $($field: U::of(self.$field.value())),* }
-            }
-        }
-
-        impl Parameters<f64> {
-            /// Returns true if every parameter is within its bounds or at its value without effect;
-            /// can check constants at compile time.
-            #[must_use]
-            pub const fn is_valid(&self) -> bool {
-                $crate::page::values_fit(PARAMETERS, &[$(self.$field),*])
-            }
-        }
-
-        impl<T: $crate::real::Real> Default for Parameters<T> {
-            fn default() -> Self {
-                let [$($field),*] = $crate::page::defaults(PARAMETERS);
-                Self { $($field: T::of($field)),* }
-            }
-        }
-
-        $crate::page::described! { @named $kind $Owner $info }
-    };
-
-    (@named parameters $Owner:ident ()) => {};
-    (@named $named:ident $Owner:ident ($info:expr)) => {
-        $named! { $Owner $info }
-
-        impl<T: $crate::real::Real> $Owner<T> {
-            /// Creates the model from its parameters.
-            ///
-            /// # Errors
-            /// Reports the first parameter that is out of its bounds.
-            pub fn new(parameters: Parameters<T>) -> Result<Self, $crate::error::ParameterError> {
-                parameters.checked().map(Self::with_parameters)
-            }
-        }
-    };
-
-    (parameters $Owner:ident; $($lines:tt)*) => {
-        $crate::page::described! { @ [parameters $Owner] () [] $($lines)* }
-    };
-    // Same parameters as another module of which this one is a second instance.
-    ($named:ident $Owner:ident = $info:expr; as $($part:ident)::+;) => {
-        pub use $($part::)+Parameters;
-        use $($part::)+PARAMETERS;
-
-        $crate::page::described! { @named $named $Owner ($info) }
-    };
-    ($kind:ident $Owner:ident = $info:expr; $($lines:tt)*) => {
-        $crate::page::described! { @ [$kind $Owner] ($info) [] $($lines)* }
-    };
-}
-
-pub(crate) use described;

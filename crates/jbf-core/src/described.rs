@@ -116,8 +116,8 @@ macro_rules! described {
         }
 
         impl Parameters<f64> {
-            /// Returns true if every parameter is within its bounds or at its value without effect;
-            /// can check constants at compile time.
+            /// Returns true if every parameter is within its bounds, or at its value without effect
+            /// if this is finite; can check constants at compile time.
             #[must_use]
             pub const fn is_valid(&self) -> bool {
                 $crate::parameter::values_fit(PARAMETERS, &[$(self.$field),*])

@@ -1,5 +1,6 @@
 //! Error type of all constructors: the parameter, its value and the violated rule.
 
+use core::cmp::Ordering;
 use core::fmt;
 
 /// Reason why a constructor failed.
@@ -21,6 +22,15 @@ pub enum Error {
     },
     /// A list has fewer values than parameters.
     TooFew {
+        /// Name of the list of values.
+        name: &'static str,
+        /// Number of values given.
+        given: usize,
+        /// Number of values required.
+        needed: usize,
+    },
+    /// A list has more values than parameters.
+    TooMany {
         /// Name of the list of values.
         name: &'static str,
         /// Number of values given.
@@ -84,6 +94,7 @@ impl Error {
             Error::UnknownEffect => "effect",
             Error::Missing { name }
             | Error::TooFew { name, .. }
+            | Error::TooMany { name, .. }
             | Error::NotPositive { name, .. }
             | Error::Negative { name, .. }
             | Error::NotFinite { name, .. }
@@ -97,7 +108,7 @@ impl Error {
     pub const fn value(&self) -> Option<f64> {
         match *self {
             Error::UnknownLaw | Error::UnknownEffect | Error::Missing { .. } => None,
-            Error::TooFew { given, .. } => Some(given as f64),
+            Error::TooFew { given, .. } | Error::TooMany { given, .. } => Some(given as f64),
             Error::NotPositive { value, .. }
             | Error::Negative { value, .. }
             | Error::NotFinite { value, .. }
@@ -113,6 +124,7 @@ impl Error {
             Error::UnknownLaw | Error::UnknownEffect => "is not in the catalogue",
             Error::Missing { .. } => "is missing",
             Error::TooFew { .. } => "are too few",
+            Error::TooMany { .. } => "are too many",
             Error::NotPositive { .. } => "must be positive and finite",
             Error::Negative { .. } => "must be zero or positive, and finite",
             Error::NotFinite { .. } => "must be finite",
@@ -134,6 +146,9 @@ impl fmt::Display for Error {
             } => write!(f, "{name} = {value} must lie between {lower} and {upper}"),
             Error::TooFew { given, needed, .. } => {
                 write!(f, "{name} {rule}: {given} of {needed}")
+            }
+            Error::TooMany { given, needed, .. } => {
+                write!(f, "{name} {rule}: {given} instead of {needed}")
             }
             _ => match self.value() {
                 Some(value) => write!(f, "{name} = {value} {rule}"),
@@ -214,16 +229,20 @@ pub(crate) fn given<T: Copy>(values: &[T], i: usize, name: &'static str) -> Resu
     needed(name, values.get(i).copied())
 }
 
-/// Checks that a list has a value for each of the required parameters.
-pub(crate) fn enough(name: &'static str, given: usize, needed: usize) -> Result<(), Error> {
-    if given >= needed {
-        Ok(())
-    } else {
-        Err(Error::TooFew {
+/// Checks that a list has one value for each of the parameters.
+pub(crate) fn exactly(name: &'static str, given: usize, needed: usize) -> Result<(), Error> {
+    match given.cmp(&needed) {
+        Ordering::Less => Err(Error::TooFew {
             name,
             given,
             needed,
-        })
+        }),
+        Ordering::Equal => Ok(()),
+        Ordering::Greater => Err(Error::TooMany {
+            name,
+            given,
+            needed,
+        }),
     }
 }
 
@@ -245,6 +264,10 @@ mod tests {
                     needed: 4,
                 },
                 "parameters are too few: 2 of 4",
+            ),
+            (
+                exactly("parameters", 5, 4).expect_err("one more"),
+                "parameters are too many: 5 instead of 4",
             ),
             (
                 positive("radius_m", -1.0).expect_err("negative"),

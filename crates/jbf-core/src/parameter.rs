@@ -3,7 +3,7 @@
 //! The description is the single source of the name, the bounds, the start values of a fit, and the
 //! behaviour under reflection.
 
-use crate::error::{check, given, needed, within, ParameterError};
+use crate::error::{check, exactly, given, needed, within, ParameterError};
 use crate::real::Real;
 
 /// Behaviour of a parameter under reflection of the machine, which reverses every direction.
@@ -237,7 +237,7 @@ impl Parameter {
 }
 
 /// Returns true if there is one value per parameter and each is within its bounds or at its null
-/// value.
+/// value, which must be finite: an effect with an infinite null value must be omitted.
 ///
 /// The function can check constants at compile time.
 pub(crate) const fn values_fit(parameters: &[Parameter], values: &[f64]) -> bool {
@@ -248,7 +248,7 @@ pub(crate) const fn values_fit(parameters: &[Parameter], values: &[f64]) -> bool
     while i < values.len() {
         let (parameter, value) = (&parameters[i], values[i]);
         let at_null = match parameter.null {
-            Some(null) => value == null,
+            Some(null) => null.is_finite() && value == null,
             None => false,
         };
         let within = at_null || (value >= parameter.lower && value <= parameter.upper);
@@ -281,7 +281,7 @@ pub(crate) const fn equal_ignoring_case(a: &str, b: &str) -> bool {
 /// The null value of a parameter is always valid.
 ///
 /// # Errors
-/// Reports the first value that is missing or out of bounds.
+/// Reports the first value that is missing or out of bounds, or more values than parameters.
 pub(crate) fn in_bounds<T: Real>(
     parameters: &[Parameter],
     values: &[T],
@@ -292,7 +292,7 @@ pub(crate) fn in_bounds<T: Real>(
             within(p.name, value, [p.lower, p.upper])?;
         }
     }
-    Ok(())
+    exactly("parameters", values.len(), parameters.len())
 }
 
 /// Returns the values that `Parameters::default()` of a law or an effect has.

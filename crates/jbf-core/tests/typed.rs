@@ -2,10 +2,11 @@
 
 use jbf_core::effect::gravity::{self, Gravity};
 use jbf_core::effect::sensor_lag::{self, SensorLag};
+use jbf_core::effect::shear_thinning::{self, ShearThinning};
 use jbf_core::effect::Named as NamedEffect;
 use jbf_core::law::lugre::{self, LuGre};
-use jbf_core::law::Named;
-use jbf_core::{Bearing, Chain, Clock, Motion};
+use jbf_core::law::{steady_n, Named};
+use jbf_core::{Bearing, Chain, Clock, Error, Motion};
 
 const LUGRE: lugre::Parameters<f64> = lugre::Parameters {
     f_c: 4.0,
@@ -37,6 +38,48 @@ fn parameter_out_of_bounds_is_refused_with_its_name() {
     let too_small = lugre::Parameters { f_s: -1.0, ..LUGRE };
     assert!(!too_small.is_valid());
     assert_eq!(LuGre::new(too_small).expect_err("refused").name(), "F_s");
+}
+
+/// An effect that vanishes at infinity must be omitted there.
+#[test]
+fn infinite_value_without_effect_is_refused_by_constructor_and_validity_check() {
+    let usual = shear_thinning::Parameters::<f64>::default();
+    assert!(usual.is_valid() && ShearThinning::new(usual).is_ok());
+    let without = shear_thinning::Parameters {
+        u_c_m_s: f64::INFINITY,
+        ..usual
+    };
+    assert!(!without.is_valid());
+    let error = ShearThinning::new(without).expect_err("refused");
+    assert_eq!(error.name(), "U_c_m_s");
+}
+
+#[test]
+fn more_values_than_parameters_are_refused() {
+    let too_many = |given, needed| Error::TooMany {
+        name: "parameters",
+        given,
+        needed,
+    };
+    let effect = <Gravity<f64> as NamedEffect<f64>>::build(&[3.0, 0.4, 0.0]);
+    assert_eq!(effect.expect_err("three"), too_many(3, 2));
+    for (name, values) in [
+        ("coulomb", &[4.0, 6.0, 10.0, 0.0][..]),
+        ("journal", &[0.1, 0.1, 1e5, 1.0, 0.0]),
+    ] {
+        let (bearing, mut out) = (Some(&Bearing::THESIS), [0.0]);
+        let error = steady_n(
+            name,
+            bearing,
+            Some(104.0),
+            values,
+            Clock::Journal,
+            &[0.1],
+            &mut out,
+        );
+        let needed = values.len() - 1;
+        assert_eq!(error.expect_err(name), too_many(needed + 1, needed));
+    }
 }
 
 /// The default of an effect has no influence where there is such a value.

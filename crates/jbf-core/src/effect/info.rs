@@ -198,7 +198,7 @@ impl Info {
     /// The null value of a parameter is always valid, even if it is infinite.
     ///
     /// # Errors
-    /// Reports the first value that is missing or out of bounds.
+    /// Reports the first value that is missing or out of bounds, or more values than parameters.
     pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
         in_bounds(self.parameters, values)
     }

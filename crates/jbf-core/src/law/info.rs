@@ -121,7 +121,7 @@ impl Info {
     /// Checks the values of the parameters against their bounds.
     ///
     /// # Errors
-    /// Reports the first value that is missing or out of bounds.
+    /// Reports the first value that is missing or out of bounds, or more values than parameters.
     pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
         in_bounds(self.parameters, values)
     }

@@ -3,7 +3,7 @@
 use super::{Journal, Parameters, PARAMETERS, SUMMARY};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::{enough, needed, ParameterError};
+use crate::error::{exactly, needed, ParameterError};
 use crate::law::{Info, Named, SteadyCurve};
 use crate::real::Real;
 
@@ -38,7 +38,7 @@ pub(in crate::law) fn parts<'a, T: Real>(
     load_n: Option<f64>,
     values: &[T],
 ) -> Result<(&'a Bearing, f64, Parameters<T>), ParameterError> {
-    enough("parameters", values.len(), PARAMETERS.len())?;
+    exactly("parameters", values.len(), PARAMETERS.len())?;
     let bearing = needed("bearing", bearing)?;
     let load_n = needed("load_n", load_n)?;
     let parameters = Parameters {

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! commanded motion -> drive -> lubricant -> load -> film (the law)
-//!                  -> contact -> other -> instrument
+//!                  -> contact -> transmission -> bristle -> other -> instrument
 //! ```
 //!
 //! Each stage takes its input at both ends of the step and returns its output at the end, so the
 //! order of accuracy is that of the integration method. Feedback (a warming film, the load on a
 //! compliant drive) uses the values of the previous step.
+
+mod longest_step;
 
 use crate::bearing::Bearing;
 use crate::effect::{Effect, Effects, Resistance, Rig, Signal};
@@ -15,7 +17,6 @@ use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
-use crate::record::Record;
 
 /// Shortest time step, s. A shorter step counts as a step of zero length, because its inverse would
 /// overflow in single precision.
@@ -27,7 +28,7 @@ pub const SHORTEST_STEP_S: f64 = 1e-12;
 pub struct Chain<T: Real, L, E = Effects<T>> {
     /// The friction law.
     pub law: L,
-    /// Effects of the drive, lubricant, load, contact and instrument.
+    /// The effects, each of which acts at its own stage.
     pub effects: E,
     /// Properties of the rig that effects need, such as the journal radius.
     pub rig: Rig<T>,
@@ -171,13 +172,13 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         let mut effects = state.effects;
         self.effects
             .contact(&mut effects, &moving, &moving, &mut sliding, T::ZERO);
-        let beside_n = |journal| {
+        let other_n = |journal| {
             let (mut all_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
             self.effects
                 .add_friction(&state.effects, journal, &mut all_n, &mut transmitted_n);
             all_n.smooth
         };
-        sliding.smooth * load_n + beside_n(&moving) - beside_n(&still)
+        sliding.smooth * load_n + other_n(&moving) - other_n(&still)
     }
 
     /// Returns the state at the first sample of a run.
@@ -241,8 +242,8 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         self.act(law, state, journal, factor, dt_s);
         let mean = from.velocity_m_s + journal.velocity_m_s;
         let mut signal = Signal {
-            begin_n: begin_n + jump_n * turn(from.direction, mean),
-            end_n: state.force_n + state.jump_n * turn(journal.direction, mean),
+            begin_n: begin_n + jump_n * direction_change(from.direction, mean),
+            end_n: state.force_n + state.jump_n * direction_change(journal.direction, mean),
             now_n: state.force_n,
         };
         self.effects
@@ -268,61 +269,6 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
             ..*before
         };
         self.step(state, &to, dt_s)
-    }
-
-    /// Longest stable step of the law at the top speed (m/s), under the lightest and the heaviest
-    /// load of a run, s.
-    pub(crate) fn longest_film_step_s(&self, record: &Record<'_>, top_m_s: f64) -> f64 {
-        let Some(first) = record.motion(0) else {
-            return self.law.longest_step_s(top_m_s);
-        };
-        let mut states = self.effects.start(&first, &self.rig);
-        let oils = self.oils(&states, record, &first);
-        let longest_of = |law: &L| {
-            let steps = oils.map(|[factor, rate]| law.longest_step_s(top_m_s * factor) / rate);
-            steps[0].min(steps[1])
-        };
-        let mut longest = longest_of(&self.law);
-        let loads = record.load_n.iter();
-        let (light, heavy) = loads.fold((f64::INFINITY, 0.0_f64), |(low, high), &n| {
-            (low.min(n), high.max(n))
-        });
-        for load_n in [light, heavy] {
-            if let Some(law) = self.scaled(&mut states, T::of(load_n)) {
-                longest = longest.min(longest_of(&law));
-            }
-        }
-        longest
-    }
-
-    /// Factors of the lubricant at the coldest and the warmest sample of a run.
-    ///
-    /// Each pair holds the factor on the speed and the factor on the rate of the film.
-    fn oils(&self, states: &E::State, record: &Record<'_>, first: &Motion<T>) -> [[f64; 2]; 2] {
-        let Some(all) = record.temperature_c else {
-            return [[1.0; 2]; 2];
-        };
-        let mut rest = first.with_velocity_m_s(T::ZERO);
-        rest.temperature_c = None;
-        let rate_of = |motion: &Motion<T>| {
-            let mut rate = T::ONE;
-            let journal = JournalMotion::from(motion);
-            self.effects.film_rate(states, &journal, &mut rate);
-            rate.value()
-        };
-        let usual = rate_of(&rest);
-        let ends = all
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &c| {
-                [low.min(c), high.max(c)]
-            });
-        ends.map(|c| {
-            let motion = rest.with_temperature_c(T::of(c));
-            let mut factor = T::ONE;
-            let journal = JournalMotion::from(&motion);
-            self.effects.lubricant(states, &journal, &mut factor);
-            [factor.value(), rate_of(&motion) / usual]
-        })
     }
 
     /// Returns the law scaled for the load `load_n`, if an effect scales the law.
@@ -362,13 +308,13 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
             &mut sliding,
             dt_s,
         );
-        let (mut beside_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
+        let (mut other_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
         self.effects
-            .add_friction(&state.effects, &journal, &mut beside_n, &mut transmitted_n);
+            .add_friction(&state.effects, &journal, &mut other_n, &mut transmitted_n);
         self.effects
             .transmission(&state.effects, &mut sliding, transmitted_n);
         // Friction that deflects a bristle, and friction that acts in parallel with it.
-        let (magnitude, beside) = if L::BENDS_WHOLE {
+        let (magnitude, parallel) = if L::BENDS_WHOLE {
             (sliding.jump + sliding.smooth.abs(), T::ZERO)
         } else {
             (sliding.jump, sliding.smooth)
@@ -388,7 +334,7 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
                 .bristle(states, from, &journal, &mut deflected, levels, dt_s);
             deflected
         };
-        let bent = bent.map(|bristle| bristle + beside);
+        let bent = bent.map(|bristle| bristle + parallel);
         let coefficient = bent.unwrap_or_else(|| sliding.along(journal.direction));
         // A bristle turns the jump of the contact into a slope.
         let contact_n = if bent.is_some() {
@@ -396,8 +342,8 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         } else {
             sliding.jump * load_n
         };
-        state.jump_n = contact_n + beside_n.jump;
-        state.force_n = coefficient * load_n + beside_n.jump * journal.direction + beside_n.smooth;
+        state.jump_n = contact_n + other_n.jump;
+        state.force_n = coefficient * load_n + other_n.jump * journal.direction + other_n.smooth;
         state.magnitude = magnitude;
         let speed = journal.velocity_m_s;
         if self.effects.has_drive() {
@@ -407,7 +353,7 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
                 (sliding.smooth * load_n / speed).max(T::ZERO)
             };
             let resistance = Resistance {
-                level_n: sliding.jump * load_n + beside_n.jump,
+                level_n: sliding.jump * load_n + other_n.jump,
                 slope_n_s_m: slope,
             };
             self.effects.resist(&mut state.effects, &resistance, dt_s);
@@ -426,7 +372,7 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
 /// reverses at that end jumps. A journal held by a compliant drive passes through every direction
 /// in between and never jumps.
 #[inline(always)]
-fn turn<T: Real>(direction: T, mean_speed_m_s: T) -> T {
+fn direction_change<T: Real>(direction: T, mean_speed_m_s: T) -> T {
     let inside = mean_speed_m_s.sign();
     if inside == T::ZERO || (direction != T::ZERO && direction != -inside) {
         T::ZERO

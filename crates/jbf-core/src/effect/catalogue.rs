@@ -1,7 +1,7 @@
 //! Catalogue of effects in the order in which the signal chain evaluates them.
 
 use super::compose::{forward_stages, stages};
-use super::registry::{signal_chain, Shelf};
+use super::registry::{signal_chain, StageEffects};
 use super::{
     backlash, cogging, cogging_2, coulomb_drag, direction_asymmetry, drive_compliance,
     dry_asymmetry, dry_load_dependence, dry_temperature_dependence, dwell_stiction, film_memory,

@@ -23,7 +23,7 @@ macro_rules! named_effect {
 }
 
 /// Optional effects of one stage of the catalogue, as nested pairs.
-pub(crate) trait Shelf<T: Real>: Effect<T> {
+pub(crate) trait StageEffects<T: Real>: Effect<T> {
     /// Stage without effects.
     const EMPTY: Self;
 
@@ -37,7 +37,7 @@ pub(crate) trait Shelf<T: Real>: Effect<T> {
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
 }
 
-impl<T: Real> Shelf<T> for () {
+impl<T: Real> StageEffects<T> for () {
     const EMPTY: Self = ();
 
     fn is_empty(&self) -> bool {
@@ -49,7 +49,7 @@ impl<T: Real> Shelf<T> for () {
     }
 }
 
-impl<T: Real, E: Named<T>, S: Shelf<T>> Shelf<T> for (Option<E>, S) {
+impl<T: Real, E: Named<T>, S: StageEffects<T>> StageEffects<T> for (Option<E>, S) {
     const EMPTY: Self = (None, S::EMPTY);
 
     fn is_empty(&self) -> bool {
@@ -71,13 +71,13 @@ impl<T: Real, E: Named<T>, S: Shelf<T>> Shelf<T> for (Option<E>, S) {
     }
 }
 
-/// Defines the type that implements [`Shelf`] for the effects of one stage, in their order.
-macro_rules! shelf {
+/// Defines the type that implements [`StageEffects`] for the effects of one stage, in their order.
+macro_rules! stage_effects {
     ($T:ident:) => { () };
     ($T:ident: $module:ident::$Type:ident $(, $more:ident::$More:ident)*) => {
         (
             Option<$crate::effect::$module::$Type<$T>>,
-            $crate::effect::registry::shelf!($T: $($more::$More),*),
+            $crate::effect::registry::stage_effects!($T: $($more::$More),*),
         )
     };
 }
@@ -86,8 +86,8 @@ macro_rules! signal_chain {
     ($($field:ident: $Stage:ident [$($module:ident::$Type:ident),* $(,)?],)*) => {
         /// Types of the effects of each stage; each type has the name of its stage.
         #[allow(non_camel_case_types)]
-        mod line {
-            $(pub(crate) type $field<T> = $crate::effect::registry::shelf!(T: $($module::$Type),*);)*
+        mod stage_types {
+            $(pub(crate) type $field<T> = $crate::effect::registry::stage_effects!(T: $($module::$Type),*);)*
         }
 
         /// Effects selected from the catalogue by name at run time.
@@ -96,13 +96,13 @@ macro_rules! signal_chain {
         /// for its members.
         #[derive(Clone, Copy, Debug)]
         pub struct Effects<T: Real> {
-            $($field: line::$field<T>,)*
+            $($field: stage_types::$field<T>,)*
         }
 
         /// States of the selected effects.
         #[derive(Clone, Copy, Debug)]
         pub struct States<T: Real> {
-            $($field: <line::$field<T> as Effect<T>>::State,)*
+            $($field: <stage_types::$field<T> as Effect<T>>::State,)*
         }
 
         /// Stages of the signal chain at which an effect is selected.
@@ -128,7 +128,7 @@ macro_rules! signal_chain {
 
         impl<T: Real> Effects<T> {
             /// No effect: the base law.
-            pub const NONE: Self = Self { $($field: Shelf::EMPTY,)* };
+            pub const NONE: Self = Self { $($field: StageEffects::EMPTY,)* };
 
             /// Returns the stages at which an effect is selected.
             pub fn occupied_stages(&self) -> OccupiedStages {
@@ -178,4 +178,4 @@ macro_rules! signal_chain {
     };
 }
 
-pub(crate) use {named_effect, shelf, signal_chain};
+pub(crate) use {named_effect, signal_chain, stage_effects};

@@ -1,5 +1,4 @@
-//! Macro that generates the parameters of a law or an effect, and its entry in the catalogue, from one
-//! line per parameter.
+//! Macro that generates the parameters of a law or an effect and its entry in the catalogue.
 
 /// Describes a law or an effect for the catalogue, together with its parameters.
 ///

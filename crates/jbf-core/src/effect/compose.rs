@@ -1,7 +1,9 @@
 //! Sets of effects: the empty set, a pair, and an optional set.
 //!
 //! A set forwards each method of [`Effect`] to its members. The list in `forward_stages!` is the only
-//! place in which the methods of the stages are enumerated for this purpose.
+//! place in which the methods of the stages are enumerated for this purpose. `start` and the four
+//! queries (`longest_step_s`, `has_memory`, `has_drive`, `fastest_film`) are written out for each
+//! set.
 
 use super::{Effect, Resistance, Rig, Signal};
 use crate::friction::Friction;
@@ -40,6 +42,9 @@ macro_rules! forward_stages {
 }
 
 /// Methods of a pair: those of the first member, then those of the second.
+///
+/// In this macro and in those below, `$m` is the method, `$ref` the kind of reference to the state,
+/// `$i` an input, `$o` a quantity that the members change in turn, and `$v` a value.
 macro_rules! pair {
     ($($m:ident $stages:tt [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*)
         ($($v:ident: $V:ty),*);)*) => {$(

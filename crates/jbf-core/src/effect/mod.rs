@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! commanded motion -> drive -> lubricant -> load -> film (the law)
-//!                  -> contact -> other -> instrument
+//!                  -> contact -> transmission -> bristle -> other -> instrument
 //! ```
 //!
 //! An effect is independent of the other stages. Each module has a type for the effect, and the

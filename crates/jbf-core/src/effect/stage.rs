@@ -13,6 +13,16 @@ use core::fmt::Debug;
 /// signals unchanged, so an effect has only the methods of its stage. Quantities that several
 /// effects change in turn are mutable arguments.
 ///
+/// The signal chain evaluates the stages in the order drive, lubricant, load, film, contact,
+/// transmission, bristle, other, instrument. The catalogue lists load as film, and transmission and
+/// bristle as contact.
+///
+/// An effect that implements [`drive`](Self::drive) must return true from
+/// [`has_drive`](Self::has_drive); otherwise the chain does not call [`resist`](Self::resist). An
+/// effect that raises the rate in [`film_rate`](Self::film_rate) must return its largest factor
+/// from [`fastest_film`](Self::fastest_film), which limits the step; the dependence of the rate on
+/// the recorded temperature is taken from the record.
+///
 /// Sets are composed of effects: `()` has no effect, `(A, B)` has the effects of `A` and then those
 /// of `B` at every stage, `Option<A>` those of `A` or none, and [`Effects`](super::Effects) those
 /// selected from the catalogue by name at run time. A set reserves memory for its own effects only.
@@ -40,7 +50,8 @@ pub trait Effect<T: Real>: Copy + Debug {
         core::mem::size_of::<Self::State>() > 0
     }
 
-    /// Returns true if the motion of the journal may differ from the commanded motion.
+    /// Returns true if the motion of the journal may differ from the commanded motion, as it does
+    /// with every effect that implements `drive`.
     #[inline(always)]
     fn has_drive(&self) -> bool {
         false
@@ -92,7 +103,7 @@ pub trait Effect<T: Real>: Copy + Debug {
         let _ = (state, power_w, dt_s);
     }
 
-    /// Stage film: sets the factors on the parameters of the law for a load of `share` times the
+    /// Stage load: sets the factors on the parameters of the law for a load of `share` times the
     /// nominal load of the rig.
     ///
     /// `scales` remains `None` if no effect depends on the load.
@@ -107,7 +118,8 @@ pub trait Effect<T: Real>: Copy + Debug {
         let _ = (state, journal, rate);
     }
 
-    /// Stage film: returns the largest factor on the rate of the film dynamics, at least one.
+    /// Stage film: returns the largest factor by which `film_rate` multiplies the rate of the film
+    /// dynamics, at least one.
     #[inline]
     fn fastest_film(&self) -> f64 {
         1.0
@@ -127,14 +139,14 @@ pub trait Effect<T: Real>: Copy + Debug {
         let _ = (state, from, to, sliding, dt_s);
     }
 
-    /// Stage contact: changes the sliding friction, a coefficient, according to the force (N) that
-    /// the transmission carries.
+    /// Stage transmission: changes the sliding friction, a coefficient, according to the force (N)
+    /// that the transmission carries.
     #[inline(always)]
     fn transmission(&self, state: &Self::State, sliding: &mut Friction<T>, transmitted_n: T) {
         let _ = (state, sliding, transmitted_n);
     }
 
-    /// Stage contact: replaces the jump of friction at a reversal by the deflection of a bristle,
+    /// Stage bristle: replaces the jump of friction at a reversal by the deflection of a bristle,
     /// after all other effects on the contact.
     ///
     /// Sets `deflected` to the signed friction coefficient; it remains `None` without a bristle.
@@ -153,8 +165,9 @@ pub trait Effect<T: Real>: Copy + Debug {
         let _ = (state, from, to, deflected, magnitude, dt_s);
     }
 
-    /// Stage other: adds friction to `sum_n`, N, and the force that the transmission carries to
-    /// `transmitted_n`, N.
+    /// Stages other and instrument: adds friction to `sum_n`, N, and the force that the
+    /// transmission carries to `transmitted_n`, N. The offset of an instrument, for example, is part
+    /// of the transmitted force.
     #[inline(always)]
     fn add_friction(
         &self,

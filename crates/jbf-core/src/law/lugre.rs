@@ -40,6 +40,10 @@ use crate::parameter::Start;
 use crate::path::legs;
 use crate::real::Real;
 
+/// Longest step with which the friction level, a nonlinear function of the speed, is sufficiently
+/// accurate if it is linear in each step, s.
+const LONGEST_STEP_S: f64 = 0.002;
+
 /// LuGre law with Stribeck curve and viscous friction.
 #[derive(Clone, Copy, Debug)]
 pub struct LuGre<T> {
@@ -128,10 +132,9 @@ impl<T: Real> Law<T> for LuGre<T> {
         }
     }
 
-    /// Longest step with which the friction level, a nonlinear function of the speed, is accurate
-    /// if it is linear in each step, s.
+    /// Longest step for the accuracy of the friction level, s; the step is stable at any length.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
-        0.002
+        LONGEST_STEP_S
     }
 
     #[inline(always)]

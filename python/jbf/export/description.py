@@ -14,11 +14,14 @@ from jbf.export.target import MAIN, Settings, Target, Written, xml_text
 from jbf.models.model import Model
 
 EVALUATED = "jbf, same equations"
+LEVEL_AND_DAMPING = Elements()
 
 
-def _form(reference: Reference) -> tuple[JointForm, tuple[Term, ...], list[str]]:
+def _form(
+    reference: Reference, elements: Elements = LEVEL_AND_DAMPING
+) -> tuple[JointForm, tuple[Term, ...], list[str]]:
     """Dry level and damping of a joint, the terms, and a note with the units."""
-    form, terms = joint_form(reference, Elements())
+    form, terms = joint_form(reference, elements)
     quantities = reference.model.rig.quantities
     units = f"friction in {quantities.force}, damping in {quantities.unit('N s/m')}"
     return form, terms, [units]
@@ -97,15 +100,19 @@ def write_sdf(reference: Reference, settings: Settings) -> Written:
 
 
 def _static_level(model: Model, dynamic: float) -> float:
-    """Static friction level of a law, not below the dynamic one."""
+    """Static friction level of a model, N or N m, not below the dynamic one.
+
+    It is that of the law, with `coulomb_drag` and the value of `stribeck_excess` at rest.
+    """
     p = {name: value.value for name, value in model.parameters.items()}
-    static = p["F_c"] + p["F_s_inf"] if "F_s_inf" in p else p.get("F_s", 0.0)
-    return max(static, dynamic)
+    law = p["F_c"] + p["F_s_inf"] if "F_s_inf" in p else p.get("F_s", p.get("F_c", 0.0))
+    effects = p.get("coulomb_drag.F_d", 0.0) + p.get("stribeck_excess.a", 0.0)
+    return max(law + effects, dynamic)
 
 
 def write_isaac(reference: Reference, settings: Settings) -> Written:
     """Write the friction fields of an actuator of Isaac Lab, as Python and as JSON."""
-    form, terms, notes = _form(reference)
+    form, terms, notes = _form(reference, Elements(static_level=True))
     model = reference.model
     values = {
         "friction": _static_level(model, form.level),
@@ -115,8 +122,6 @@ def write_isaac(reference: Reference, settings: Settings) -> Written:
     inertia = model.parameters.get("inertia.m_e")
     armature = {} if inertia is None else {"armature": max(inertia.value, 0.0)}
     law, *others = _carried(terms, values)
-    if law.how.endswith("breakaway is at F_c, not at F_s"):
-        law = replace(law, status="exact", how=", ".join(values))
     how = "armature; subtract the inertia that your bodies have"
     carried = [replace(t, how=how, values=armature) if t.name == "inertia" else t for t in others]
     fields = values | armature

@@ -12,6 +12,12 @@ from jbf.export.reference import Reference, force_of_effects
 from jbf.models.model import Model
 
 Array = npt.NDArray[np.float64]
+MOST_CHANGE = 8.0
+"""Largest change of the logarithm of a fitted value, a factor of about 3000."""
+MOST_EVALUATIONS = 40
+"""Largest number of iterations of a fit of a form."""
+DIFFERENCE = 1e-4
+"""Relative step of the numerical derivatives of a fit; the forces of springs are not smooth."""
 UNDAMPED_SPEED = 1e3
 """Speed v_d of the law `lugre` at which sigma_1 does not decay."""
 
@@ -30,12 +36,15 @@ class Elements:
         Parallel springs that yield.
     cogging
         Force that is periodic in the position.
+    static_level
+        Level at rest above the dry level of sliding.
     """
 
     polynomial: bool = False
     bristle: bool = False
     springs: bool = False
     cogging: bool = False
+    static_level: bool = False
 
 
 @dataclass(frozen=True)
@@ -45,14 +54,16 @@ class JointForm:
     Attributes
     ----------
     level
-        Dry friction, the same in both directions.
+        Dry friction, the same in both directions, in the force unit of the rig (N or N m).
     damping
-        Coefficients of v, v |v| and v^3.
+        Coefficients of v, v |v| and v^3; that of v in N s/m or N m s/rad, the others per further
+        m/s or rad/s.
     bristle
-        Parameters F_c, F_s, v_s, sigma_0 and sigma_1 of a LuGre bristle; empty without one.
+        Parameters F_c and F_s (N or N m), v_s (m/s or rad/s), sigma_0 (N/m or N m/rad) and sigma_1
+        (N s/m or N m s/rad) of a LuGre bristle; empty without one.
     springs
-        Parameters F_c, sigma_0 and exponent of sixteen springs that yield (law `maxwell_slip`);
-        empty without them.
+        Parameters F_c (N or N m), sigma_0 (N/m or N m/rad) and exponent of sixteen springs that
+        yield (law `maxwell_slip`); empty without them.
     cogging
         Effects of the model that are carried as cogging.
     """
@@ -64,7 +75,7 @@ class JointForm:
     cogging: tuple[str, ...] = ()
 
     def force(self, reference: Reference) -> list[Array]:
-        """Force along the runs of a reference, each shape (n,)."""
+        """Force along the runs of a reference, N or N m, each shape (n,)."""
         force = [
             self.level * np.sign(v) + v * np.polyval(self.damping[::-1], np.abs(v))
             for v in reference.velocity
@@ -126,11 +137,20 @@ def with_polynomial(reference: Reference, form: JointForm) -> JointForm:
     return replace(form, level=level, damping=(a, b, c))
 
 
-def fit_form(reference: Reference, form: JointForm, free: tuple[str, ...]) -> JointForm:
+def fit_form(
+    reference: Reference, form: JointForm, free: tuple[str, ...]
+) -> tuple[JointForm, bool]:
     """Fit values of a form to the force of a reference, by least squares; none becomes negative.
 
     Positive values are fitted by their logarithm; the damping and a value that starts at zero are
     fitted linearly.
+
+    Returns
+    -------
+    form : JointForm
+        The form with the fitted values.
+    converged : bool
+        Whether the fit converged within `MOST_EVALUATIONS` iterations.
     """
     from scipy.optimize import least_squares
 
@@ -152,8 +172,14 @@ def fit_form(reference: Reference, form: JointForm, free: tuple[str, ...]) -> Jo
         return reference.pooled(a - b for a, b in errors) / size
 
     begin = [form.value(name) / unit[name] if name in linear else 0.0 for name in free]
-    bounds = [(0.0, np.inf) if name in linear else (-8.0, 8.0) for name in free]
+    bounds = [(0.0, np.inf) if name in linear else (-MOST_CHANGE, MOST_CHANGE) for name in free]
     lower, upper = np.array(bounds).T
     start = np.clip(begin, lower + 1e-9, None)
-    solution = least_squares(residual, start, bounds=(lower, upper), diff_step=[1e-4], max_nfev=40)
-    return form.with_values(values(solution.x))
+    solution = least_squares(
+        residual,
+        start,
+        bounds=(lower, upper),
+        diff_step=[DIFFERENCE],
+        max_nfev=MOST_EVALUATIONS,
+    )
+    return form.with_values(values(solution.x)), solution.status > 0

@@ -7,25 +7,35 @@ with values fitted to the model along its runs.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.export.joint_elements import Elements, JointForm, fit_form, with_polynomial
+from jbf.export.joint_elements import (
+    MOST_EVALUATIONS,
+    Elements,
+    JointForm,
+    fit_form,
+    with_polynomial,
+)
 from jbf.export.ledger import Status, Term
-from jbf.export.reference import BODY, Reference, force_of_effects, instrument
+from jbf.export.reference import BODY, COGGING, Reference, force_of_effects, instrument
 from jbf.models.catalogue import built_in
 from jbf.models.model import Model
 
-COGGING = ("cogging", "cogging_2")
 STIFF = 1e-5
 """Deflection of a bristle that represents a jump, as a share of the range of the runs."""
 NEGLIGIBLE = 1e-6
 """Level of a bristle that carries the Stribeck part only, relative to that part."""
+LEAST_LEVEL = 1e-6
+"""Lower bound of F_c in the catalogue, in the force unit of the rig."""
+SPRINGS_EXPONENT = 0.3
+"""Value of the exponent of springs from which it is fitted to the law `elasto_plastic`."""
 
 _ONE_LEVEL = "a joint has the same friction in both directions"
+_NO_STATIC_LEVEL = "breakaway is at F_c, not at F_s"
 _NO_POSITION = "the friction of a joint does not depend on the position"
 _NOT_CARRIED = {
     "drive_compliance": "needs two joints with a spring",
@@ -68,6 +78,31 @@ class _Start:
     """Whether the bristle carries the effect `stribeck_excess`."""
 
 
+@dataclass(frozen=True)
+class _Carried:
+    """Form of a model, and how its values were determined.
+
+    Attributes
+    ----------
+    elements
+        Elements of the target.
+    form
+        The form with its final values.
+    fitted
+        Effects whose mean along the runs is contained in fitted values.
+    refitted
+        Values of the form that were fitted, named as in `JointForm.value`.
+    excess
+        Whether the bristle carries the effect `stribeck_excess`.
+    """
+
+    elements: Elements
+    form: JointForm
+    fitted: Collection[str]
+    refitted: Collection[str]
+    excess: bool
+
+
 def joint_form(reference: Reference, elements: Elements) -> tuple[JointForm, tuple[Term, ...]]:
     """Bring a model to the elements of a joint.
 
@@ -107,21 +142,29 @@ def joint_form(reference: Reference, elements: Elements) -> tuple[JointForm, tup
         form = replace(
             form, damping=(form.damping[0], model.parameters["quadratic_drag.c"].value, 0.0)
         )
-    free = start.free
+    free, lost, exact, excess = start.free, start.lost, start.exact, start.excess
     if fitted:
         free = tuple(dict.fromkeys([*free, *_scales(form), "damping"]))
+        exact = False
     if free:
-        form = fit_form(target, form, free)
-        plain = fit_form(target, JointForm(1.0, (1.0, 0.0, 0.0)), ("level", "damping"))
+        form, converged = fit_form(target, form, free)
+        level = JointForm(1.0, (1.0, *form.damping[1:]))
+        plain, plain_converged = fit_form(target, level, ("level", "damping"))
         if target.rms_error(plain.force(target)) < target.rms_error(form.force(target)):
-            form = plain
+            if form.bristle or form.springs:
+                lost = "dry level and damping alone, whose error is smaller than with a bristle"
+                exact = excess = False
+            form, converged, free = plain, plain_converged, (*free, "level", "damping")
+        if not converged:
+            stopped = f"the fit stopped after {MOST_EVALUATIONS} iterations"
+            lost = f"{lost}; {stopped}" if lost else stopped
     if "viscous_thinning" in effects and elements.polynomial:
-        form = with_polynomial(target, form)
+        form, free = with_polynomial(target, form), (*free, "level", "damping", "polynomial")
     form = replace(form, cogging=cogging)
-    law: Status = "exact" if start.exact and not fitted else "approximate"
-    terms = [Term(model.law, law, start.lost)]
+    carried = _Carried(elements, form, fitted, free, excess)
+    terms = [Term(model.law, "exact" if exact else "approximate", lost)]
     for name in model.effects:
-        terms.append(_effect_term(model, name, elements, start, fitted))
+        terms.append(_effect_term(model, name, carried))
     return form, tuple(terms)
 
 
@@ -139,26 +182,28 @@ def _check_rig(model: Model) -> None:
         )
 
 
-def _effect_term(
-    model: Model, name: str, elements: Elements, start: _Start, fitted: list[str]
-) -> Term:
+def _effect_term(model: Model, name: str, carried: _Carried) -> Term:
     if name in instrument(model):
         return Term(name, "external", "property of the recording")
     if name in BODY:
         return Term(name, "external", "mass and weight of the simulated bodies")
     if name in COGGING:
-        if elements.cogging:
+        if carried.elements.cogging:
             return Term(name, "exact", "")
         return Term(name, "none", "the target has no force that is periodic in the position")
-    if name == "stribeck_excess" and start.excess:
+    if name == "stribeck_excess" and carried.excess:
         return Term(name, "approximate", "bristle without a level at high speed")
-    if name in fitted:
+    if name in carried.fitted or name == "stribeck_excess":
         return Term(name, "approximate", "mean along the runs, part of the fitted values")
     if name in ("coulomb_drag", "quadratic_drag"):
-        return Term(name, "exact", "part of the dry level or of the damping")
+        values = {"level"} if name == "coulomb_drag" else {"damping", "polynomial"}
+        drag: Status = "approximate" if values & set(carried.refitted) else "exact"
+        return Term(name, drag, "part of the dry level or of the damping")
     if name == "presliding":
-        if start.form.bristle:
-            return Term(name, "exact" if start.exact else "approximate", "stiffness of the bristle")
+        if carried.form.bristle:
+            fitted = any(value.startswith("bristle.") for value in carried.refitted)
+            status: Status = "approximate" if fitted else "exact"
+            return Term(name, status, "stiffness of the bristle")
         return Term(name, "none", "the target has no bristle")
     return Term(name, "none", _NOT_CARRIED.get(name, "the target has no element for it"))
 
@@ -171,11 +216,15 @@ def _start(reference: Reference, elements: Elements) -> _Start:
     damping = (p.get("F_v", 0.0), 0.0, 0.0)
     start = None
     if elements.bristle:
-        start = _with_bristle(model.law, p, sigma, damping, reference)
+        start = _with_bristle(model, p, sigma, damping, reference)
         if start is not None and (start.exact or not elements.springs):
             return start
     if elements.springs and model.law in ("maxwell_slip", "dahl", "elasto_plastic"):
-        springs = {"F_c": p["F_c"], "sigma_0": p["sigma_0"], "exponent": p.get("exponent", 0.3)}
+        springs = {
+            "F_c": p["F_c"],
+            "sigma_0": p["sigma_0"],
+            "exponent": p.get("exponent", SPRINGS_EXPONENT),
+        }
         form = JointForm(damping=damping, springs=springs)
         if model.law == "elasto_plastic":
             return _Start(form, ("springs.exponent", "springs.sigma_0"))
@@ -183,9 +232,8 @@ def _start(reference: Reference, elements: Elements) -> _Start:
     if start is not None:
         return start
     if model.law == "coulomb":
-        static = p["F_s"] > p["F_c"] and not model.parameters["F_s"].held
-        lost = "breakaway is at F_c, not at F_s" if static else ""
-        exact = sigma is None and not static
+        lost = "" if elements.static_level else _lost_static_level(model)
+        exact = sigma is None and not lost
         return _Start(
             JointForm(p["F_c"], damping), () if sigma is None else ("level",), exact, lost
         )
@@ -195,8 +243,14 @@ def _start(reference: Reference, elements: Elements) -> _Start:
     return _Start(guess, ("level", "damping"), lost="a joint has no memory and no Stribeck curve")
 
 
+def _lost_static_level(model: Model) -> str:
+    """Loss of a form of the law `coulomb` without a static level; empty without a loss."""
+    static, level = model.parameters["F_s"], model.parameters["F_c"].value
+    return _NO_STATIC_LEVEL if static.value > level and not static.held else ""
+
+
 def _with_bristle(
-    law: str,
+    model: Model,
     p: Mapping[str, float],
     sigma: float | None,
     damping: tuple[float, float, float],
@@ -204,9 +258,12 @@ def _with_bristle(
 ) -> _Start | None:
     """Form of a law with a LuGre bristle; None for a law that has no such form."""
     free: tuple[str, ...]
+    law = model.law
     bristle = {"F_c": p.get("F_c", 0.0), "F_s": p.get("F_c", 0.0), "v_s": 1.0, "sigma_1": 0.0}
     if law == "coulomb" and sigma is not None:
-        return _Start(JointForm(0.0, damping, {**bristle, "sigma_0": sigma}), exact=True)
+        lost = _lost_static_level(model)
+        own = {**bristle, "sigma_0": sigma}
+        return _Start(JointForm(0.0, damping, own), exact=not lost, lost=lost)
     if law == "stribeck":
         own = {**bristle, "F_s": p["F_s"], "v_s": p["v_s"]}
         free = () if p["delta"] == 2.0 else ("bristle.F_s", "bristle.v_s")
@@ -244,7 +301,7 @@ def _with_excess(reference: Reference, start: _Start, elements: Elements) -> _St
     model, form = reference.model, start.form
     if "stribeck_excess" not in model.effects or not elements.bristle:
         return start
-    if form.bristle or form.springs or not start.exact:
+    if form.bristle or form.springs or start.free:
         return start
     a, v_s, n = (model.parameters[f"stribeck_excess.{x}"].value for x in ("a", "v_s", "n"))
     if a <= 0.0:
@@ -257,7 +314,7 @@ def _with_excess(reference: Reference, start: _Start, elements: Elements) -> _St
 def _excess_bristle(excess: float, v_s: float, reference: Reference) -> dict[str, float]:
     """Stiff bristle that carries the Stribeck part of a friction only."""
     return {
-        "F_c": max(NEGLIGIBLE * excess, 1e-6),
+        "F_c": max(NEGLIGIBLE * excess, LEAST_LEVEL),
         "F_s": excess,
         "v_s": v_s,
         "sigma_0": excess / (STIFF * reference.travel),

@@ -23,6 +23,8 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 BODY = ("inertia", "gravity")
 """Effects of the moved body: a simulator or a feedforward has them as mass and weight."""
+COGGING = ("cogging", "cogging_2")
+"""Effects that add a force that is periodic in the position."""
 
 
 def instrument(model: Model) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.export.ledger import Status, Term
-from jbf.export.reference import BODY, Reference, force_of_effects, instrument
+from jbf.export.reference import BODY, COGGING, Reference, force_of_effects, instrument
 from jbf.export.steady import best_points, speeds_of, steady_friction, weights_of
 from jbf.export.target import MAIN, Settings, Target, Written
 from jbf.models.catalogue import find_law
@@ -19,7 +19,6 @@ from jbf.models.driven_motion import driven_motion
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
-COGGING = ("cogging", "cogging_2")
 LEAST_POINTS = 4
 MOST_POINTS = 1000
 MAP_POINTS, MOST_MAP_POINTS = 32, 8192

@@ -94,3 +94,34 @@ def test_mean_of_a_user_defined_effect_is_part_of_the_fitted_values() -> None:
         jbf.forget_effect("packing")
     assert read("urdf", exported)["friction"] == pytest.approx(6.5, rel=0.02)
     assert exported.ledger.term("packing").status == "approximate"
+
+
+def test_isaac_law_with_a_fitted_level_is_approximate() -> None:
+    values = COULOMB | {"F_s": 8.0, "presliding.sigma": 20.0}
+    model = jbf.Model(JOINT, "coulomb", ["presliding"], values)
+    ledger = export.to(model, "isaac", joint_runs()).ledger
+    assert ledger.term("coulomb").status == "approximate"
+    exact = jbf.Model(JOINT, "coulomb", parameters=COULOMB | {"F_s": 8.0})
+    assert export.to(exact, "isaac", joint_runs()).ledger.term("coulomb").status == "exact"
+
+
+@pytest.mark.parametrize(
+    ("law", "effect", "values", "static"),
+    [
+        ("lugre", "coulomb_drag", {"sigma_0": 2e3, "coulomb_drag.F_d": 2.0}, 9.0),
+        ("coulomb", "stribeck_excess", {"stribeck_excess.a": 1.5}, 8.5),
+    ],
+)
+def test_isaac_static_level_contains_the_effects_that_add_to_it(
+    law: str, effect: str, values: dict[str, float], static: float
+) -> None:
+    model = jbf.Model(JOINT, law, [effect], COULOMB | {"F_s": 7.0} | values)
+    exported = export.to(model, "isaac", joint_runs(step_s=0.02))
+    assert read("isaac", exported)["friction"] == static
+
+
+def test_drag_whose_level_is_fitted_is_approximate() -> None:
+    values = COULOMB | {"sigma_0": 2e3, "coulomb_drag.F_d": 2.0, "v_d": 100.0}
+    model, runs = jbf.Model(JOINT, "lugre", ["coulomb_drag"], values), joint_runs(step_s=0.02)
+    for target, status in (("urdf", "approximate"), ("mjcf", "exact")):
+        assert export.to(model, target, runs).ledger.term("coulomb_drag").status == status

@@ -215,3 +215,24 @@ def test_without_mujoco_the_ledger_has_the_same_loss(monkeypatch: pytest.MonkeyP
     computed = export.to(model, "mjcf", runs).ledger
     assert not computed.evaluated_by.startswith("MuJoCo")
     assert computed.share == pytest.approx(measured.share, abs=1e-3)
+
+
+def statuses(exported: export.Exported) -> dict[str, str]:
+    return {term.name: term.status for term in exported.ledger.terms}
+
+
+def test_static_level_that_a_bristle_does_not_have_is_stated() -> None:
+    values = {"F_c": 4.0, "F_s": 6.0, "F_v": 2.0, "presliding.sigma": 3e3}
+    model = jbf.Model(JOINT, "coulomb", ["presliding"], values)
+    found = statuses(export.to(model, "mjcf", joint_runs(step_s=0.02)))
+    assert found == {"coulomb": "approximate", "presliding": "exact"}
+
+
+def test_quadratic_drag_is_kept_where_a_dry_level_replaces_the_bristle() -> None:
+    values = DRY | {"F_s": 5.3, "v_s": 0.3, "delta": 0.3, "quadratic_drag.c": 0.7}
+    model = jbf.Model(JOINT, "stribeck", ["quadratic_drag"], values)
+    exported = export.to(model, "mjcf", joint_runs(step_s=0.02))
+    law = exported.ledger.term("stribeck")
+    assert "lugre" not in exported.text
+    assert law.values["damping_2"] == 0.7
+    assert statuses(exported)["quadratic_drag"] == "approximate"

@@ -26,7 +26,8 @@ class CLaw:
     states
         Number of values in the state of the bristle.
     longest_step_s
-        Longest inner step, s; zero for a law without memory.
+        Longest inner step, s, as in the core (`longest_step_s` of the law or effect); zero for a
+        law without memory.
     """
 
     friction: str
@@ -118,9 +119,9 @@ ELASTO_PLASTIC = (
     BRISTLE
     + """
 static {p}_real {p}_slide({p}_real force, const {p}_leg *leg) {
-  const {p}_real way = leg->direction;
+  const {p}_real direction = leg->direction;
   const {p}_real plastic = sigma_0 / (R(1.0) - breakaway);
-  const {p}_real gap = breakaway * leg->level0 - way * force;
+  const {p}_real gap = breakaway * leg->level0 - direction * force;
   {p}_real rise, closing, share;
   {p}_leg beyond;
   if (gap <= R(0.0)) {
@@ -129,14 +130,14 @@ static {p}_real {p}_slide({p}_real force, const {p}_leg *leg) {
   rise = sigma_0 * leg->distance;
   closing = rise - breakaway * (leg->level1 - leg->level0);
   if (closing <= gap) {
-    return force + way * rise;
+    return force + direction * rise;
   }
   share = gap / closing;
-  beyond.direction = way;
+  beyond.direction = direction;
   beyond.distance = leg->distance * (R(1.0) - share);
   beyond.level0 = leg->level0 + (leg->level1 - leg->level0) * share;
   beyond.level1 = leg->level1;
-  return {p}_bent(way * breakaway * beyond.level0, &beyond, plastic);
+  return {p}_bent(direction * breakaway * beyond.level0, &beyond, plastic);
 }
 """
 )
@@ -171,13 +172,13 @@ LAWS: dict[str, CLaw] = {
     "maxwell_slip": CLaw(
         "sliding.jump = F_c; " + VISCOUS,
         """\
-const {p}_real way = leg.direction * leg.distance;
+const {p}_real displacement = leg.direction * leg.distance;
     const {p}_real level = {p}_max(leg.level1, R(0.0));
     int i;
     bent = R(0.0);
     for (i = 0; i < 16; i++) {
       const {p}_real most = spring_share[i] * level;
-      {p}_real force = state->bristle[i] + spring_stiffness[i] * way;
+      {p}_real force = state->bristle[i] + spring_stiffness[i] * displacement;
       if (force > most) {
         force = most;
       } else if (force < -most) {

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.export.reference import Reference
 from jbf.export.target import STEM
 
 Array = npt.NDArray[np.float64]
 OPTIONS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
-STATE_BYTES = 4096
 COLUMNS = (
     "time_s",
     "velocity",
@@ -27,6 +27,10 @@ COLUMNS = (
     "temperature_c",
 )
 """Columns of a motion in the order of the C structure."""
+
+
+PROBE = "#include <math.h>\n\ndouble probe(double x) {\n  return sin(x);\n}\n"
+"""Program that every C compiler accepts."""
 
 
 class NoCompiler(Exception):
@@ -41,25 +45,53 @@ def run_c(
     Raises
     ------
     NoCompiler
-        There is no compiler, or it failed.
+        There is no compiler, or it fails with any program.
+    InputError
+        The compiler works and refuses the code.
     """
     compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if compiler is None:
         raise NoCompiler
     with tempfile.TemporaryDirectory(prefix="jbf-export-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
-        (folder / "model.c").write_text(source.replace(STEM, "model"), encoding="utf-8")
+        code = f"{source.replace(STEM, 'model')}\n{_state_bytes(prefix)}"
         (folder / "model.h").write_text(header, encoding="utf-8")
-        library = folder / "model.so"
-        command = [compiler, *OPTIONS, "model.c", "-lm", "-o", str(library)]
-        done = subprocess.run(command, cwd=folder, capture_output=True, check=False)
-        if done.returncode != 0:
-            raise NoCompiler
+        errors = _compile(compiler, folder, "model", code)
+        if errors is not None:
+            if _compile(compiler, folder, "probe", PROBE) is not None:
+                raise NoCompiler
+            raise InputError(
+                problem=f"the C compiler {compiler} refuses the exported code: {errors}",
+                remedy="export on a machine with another compiler, and report the message",
+            )
         try:
-            loaded = ctypes.CDLL(str(library))
+            loaded = ctypes.CDLL(str(folder / "model.so"))
         except OSError:
             raise NoCompiler from None
         return [_along(loaded, prefix, precision, reference, i) for i in range(len(reference.runs))]
+
+
+def _state_bytes(prefix: str) -> str:
+    """C function that returns the size of the state."""
+    return (
+        f"unsigned long {prefix}_state_bytes(void);\n"
+        f"unsigned long {prefix}_state_bytes(void) {{\n"
+        f"  return (unsigned long)sizeof({prefix}_state);\n}}\n"
+    )
+
+
+def _compile(compiler: str, folder: Path, name: str, source: str) -> str | None:
+    """Compile a C file to a shared library; return the first error, None if it succeeds."""
+    (folder / f"{name}.c").write_text(source, encoding="utf-8")
+    command = [compiler, *OPTIONS, f"{name}.c", "-lm", "-o", str(folder / f"{name}.so")]
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, errors="replace", check=False
+    )
+    if done.returncode == 0:
+        return None
+    lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+    first = next((line for line in lines if "error" in line.lower()), None)
+    return first or (lines[0] if lines else f"exit status {done.returncode}")
 
 
 def _along(
@@ -77,7 +109,9 @@ def _along(
     rows = np.zeros(len(zero), np.dtype(layout, align=True))
     for name in COLUMNS:
         rows[name] = columns.get(name, zero)
-    state = ctypes.create_string_buffer(STATE_BYTES)
+    size = getattr(library, f"{prefix}_state_bytes")
+    size.restype = ctypes.c_ulong
+    state = ctypes.create_string_buffer(size())
     force = np.empty(len(rows))
     address, width = rows.ctypes.data, rows.strides[0]
     for k in range(len(rows)):

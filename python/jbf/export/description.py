@@ -112,6 +112,7 @@ def _static_level(model: Model, dynamic: float) -> float:
 
 def write_isaac(reference: Reference, settings: Settings) -> Written:
     """Write the friction fields of an actuator of Isaac Lab, as Python and as JSON."""
+    settings.check_joint_is_identifier()
     form, terms, notes = _form(reference, Elements(static_level=True))
     model = reference.model
     values = {

@@ -6,10 +6,11 @@ import io
 import uuid
 import xml.etree.ElementTree as ET
 import zipfile
+from collections.abc import Iterator
 from importlib.resources import files as package_files
 
 from jbf import _core
-from jbf.export.plain_c import filled, plain_c
+from jbf.export.plain_c import PlainC, filled, plain_c
 from jbf.export.reference import Reference
 from jbf.export.target import MAIN, STEM, Settings, Target, Written, xml_text
 from jbf.records.quantities import Quantities
@@ -21,6 +22,7 @@ DEFAULT_C = 20.0
 """Temperature before the first input, C."""
 _BASE_UNITS: dict[str, dict[str, str]] = {
     "N": {"kg": "1", "m": "1", "s": "-2"},
+    "V": {"kg": "1", "m": "2", "s": "-3", "A": "-1"},
     "N.m": {"kg": "1", "m": "2", "s": "-2"},
     "m": {"m": "1"},
     "m/s": {"m": "1", "s": "-1"},
@@ -31,6 +33,8 @@ _BASE_UNITS: dict[str, dict[str, str]] = {
     "degC": {"K": "1", "offset": "273.15"},
 }
 """Units of FMI by their exponents of SI base units."""
+UNIDENTIFIED = "00000000-0000-0000-0000-000000000000"
+"""Identifier in the texts from which the identifier of an FMU is computed."""
 
 
 def write_fmu2(reference: Reference, settings: Settings) -> Written:
@@ -45,8 +49,25 @@ def write_fmu3(reference: Reference, settings: Settings) -> Written:
 
 def _write(reference: Reference, settings: Settings, version: int) -> Written:
     made = plain_c(reference, settings)
+    archive = _archive(reference, settings, version, made, UNIDENTIFIED)
+    identifier = str(uuid.uuid5(uuid.NAMESPACE_OID, "".join(archive.values())))
+    archive = _archive(reference, settings, version, made, identifier)
+    notes = (
+        *made.notes,
+        "the FMU contains sources only; most tools compile them on import",
+        "the inputs are those at the end of a step: a master that sets them at its beginning "
+        "gets the force one step later",
+    )
+    return Written(
+        {MAIN: _zipped(archive)}, made.terms, made.force, made.evaluated_by, tuple(notes)
+    )
+
+
+def _archive(
+    reference: Reference, settings: Settings, version: int, made: PlainC, identifier: str
+) -> dict[str, str]:
+    """Texts of the archive by their paths."""
     inputs = [n for n in INPUTS if n == "velocity" or f"motion->{n}" in made.source_of_force]
-    identifier = str(uuid.uuid5(uuid.NAMESPACE_OID, made.source + made.header))
     variables = {"force": _unit(reference, "force")} | {n: _unit(reference, n) for n in inputs}
     template = (
         package_files("jbf.export").joinpath(f"fmi{version}.c.txt").read_text(encoding="utf-8")
@@ -76,16 +97,7 @@ def _write(reference: Reference, settings: Settings, version: int) -> Written:
     archive = {"modelDescription.xml": describe(made.prefix, title, identifier, variables)}
     if version == 3:
         archive["sources/buildDescription.xml"] = _build_description(made.prefix)
-    archive |= {f"sources/{name}": text for name, text in sources.items()}
-    notes = (
-        *made.notes,
-        "the FMU contains sources only; most tools compile them on import",
-        "the inputs are those at the end of a step: a master that sets them at its beginning "
-        "gets the force one step later",
-    )
-    return Written(
-        {MAIN: _zipped(archive)}, made.terms, made.force, made.evaluated_by, tuple(notes)
-    )
+    return archive | {f"sources/{name}": text for name, text in sources.items()}
 
 
 def _unit(reference: Reference, name: str) -> str:
@@ -117,22 +129,9 @@ def _description_2(prefix: str, title: str, guid: str, variables: dict[str, str]
         ET.SubElement(sources, "File", name=name)
     _add_units(root, variables)
     listed = ET.SubElement(root, "ModelVariables")
-    for reference, (name, unit) in enumerate(variables.items()):
-        output = reference == 0
-        variable = ET.SubElement(
-            listed,
-            "ScalarVariable",
-            name=name,
-            valueReference=str(reference),
-            causality="output" if output else "input",
-            variability="continuous",
-            description="force that resists the motion" if output else f"{name} of the drive",
-        )
-        if output:
-            variable.set("initial", "calculated")
-        real = ET.SubElement(variable, "Real", {"unit": unit} if unit else {})
-        if not output:
-            real.set("start", str(DEFAULT_C if name == "temperature" else 0.0))
+    for common, real in _variables(variables):
+        # In FMI 2.0 unit and start are attributes of the type, not of the variable.
+        ET.SubElement(ET.SubElement(listed, "ScalarVariable", common), "Real", real)
     structure = ET.SubElement(root, "ModelStructure")
     for group in ("Outputs", "InitialUnknowns"):
         ET.SubElement(ET.SubElement(structure, group), "Unknown", index="1")
@@ -149,6 +148,26 @@ def _root(prefix: str, title: str, attributes: dict[str, str]) -> ET.Element:
         generationTool=f"jbf {_core.__version__}",
         variableNamingConvention="flat",
     )
+
+
+def _variables(units: dict[str, str]) -> Iterator[tuple[dict[str, str], dict[str, str]]]:
+    """Attributes of each variable, and those of its real type; the first one is the output.
+
+    Parameters
+    ----------
+    units
+        Units of the variables by name; empty without one.
+    """
+    for reference, (name, unit) in enumerate(units.items()):
+        common = {"name": name, "valueReference": str(reference), "variability": "continuous"}
+        real = {"unit": unit} if unit else {}
+        if reference == 0:
+            common |= {"causality": "output", "initial": "calculated"}
+            common["description"] = "force that resists the motion"
+        else:
+            common |= {"causality": "input", "description": f"{name} of the drive"}
+            real["start"] = str(DEFAULT_C if name == "temperature" else 0.0)
+        yield common, real
 
 
 def _add_units(root: ET.Element, variables: dict[str, str]) -> None:
@@ -171,23 +190,8 @@ def _description_3(prefix: str, title: str, token: str, variables: dict[str, str
     )
     _add_units(root, variables)
     listed = ET.SubElement(root, "ModelVariables")
-    for reference, (name, unit) in enumerate(variables.items()):
-        output = reference == 0
-        attributes = {"unit": unit} if unit else {}
-        if output:
-            attributes["initial"] = "calculated"
-        else:
-            attributes["start"] = str(DEFAULT_C if name == "temperature" else 0.0)
-        ET.SubElement(
-            listed,
-            "Float64",
-            attributes,
-            name=name,
-            valueReference=str(reference),
-            causality="output" if output else "input",
-            variability="continuous",
-            description="force that resists the motion" if output else f"{name} of the drive",
-        )
+    for common, real in _variables(variables):
+        ET.SubElement(listed, "Float64", common | real)
     ET.SubElement(
         listed,
         "Float64",

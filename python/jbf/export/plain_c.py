@@ -61,7 +61,7 @@ def plain_c(reference: Reference, settings: Settings) -> PlainC:
     prefix = f"{settings.joint}_friction"
     source = c_source(model, prefix, settings.precision)
     header = _header(model, prefix, settings)
-    force, evaluated_by = reference.force, "jbf; no C compiler was found to run the code"
+    force, evaluated_by = reference.force, "jbf; no C compiler that works was found"
     try:
         whole = run_c(source, header, prefix, settings.precision, reference)
         body = force_of_effects(model, BODY, reference.motions)
@@ -91,11 +91,7 @@ def write_c(reference: Reference, settings: Settings) -> Written:
 
 
 def _check(model: Model, settings: Settings) -> None:
-    if not re.fullmatch(r"[A-Za-z]\w*", settings.joint, re.ASCII):
-        raise InputError(
-            problem=f'"{settings.joint}" is not a name in C',
-            remedy="give --joint a name of letters, digits and underscores",
-        )
+    settings.check_joint_is_identifier()
     if model.rig.bearing is not None or model.law not in LAWS:
         raise InputError(
             problem=f"the law {model.law} has no form in C without the core",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -48,6 +49,14 @@ class Settings:
     joint: str = "joint"
     mujoco: str = "4.0.0"
     precision: Precision = "double"
+
+    def check_joint_is_identifier(self) -> None:
+        """Raise an InputError if the name of the joint is not an identifier of C and Python."""
+        if not re.fullmatch(r"[A-Za-z]\w*", self.joint, re.ASCII):
+            raise InputError(
+                problem=f'"{self.joint}" is not an identifier',
+                remedy="give --joint a letter, then letters, digits and underscores",
+            )
 
 
 @dataclass(frozen=True)

@@ -125,3 +125,11 @@ def test_drag_whose_level_is_fitted_is_approximate() -> None:
     model, runs = jbf.Model(JOINT, "lugre", ["coulomb_drag"], values), joint_runs(step_s=0.02)
     for target, status in (("urdf", "approximate"), ("mjcf", "exact")):
         assert export.to(model, target, runs).ledger.term("coulomb_drag").status == status
+
+
+@pytest.mark.parametrize("joint", ["left-elbow", "1", 'a"b'])
+def test_isaac_joint_that_is_not_an_identifier_is_refused(joint: str) -> None:
+    model = jbf.Model(JOINT, "coulomb", parameters=COULOMB)
+    settings = export.Settings(joint=joint)
+    with pytest.raises(jbf.InputError, match="identifier"):
+        export.to(model, "isaac", joint_runs(step_s=0.02), settings=settings)

@@ -148,3 +148,28 @@ def test_fmu_is_valid_and_gives_the_prediction_in_fmpy(
     error = force[1 : count + 1] - expected[:count]
     scale = np.sqrt(np.mean(expected**2))
     assert np.sqrt(np.mean(error[2:] ** 2)) < 1e-3 * scale
+
+
+def identifier_of(exported: export.Exported) -> str:
+    root = ET.fromstring(files_of(exported)["modelDescription.xml"])
+    attributes = root.attrib
+    return attributes.get("guid") or attributes["instantiationToken"]
+
+
+def test_archives_with_different_content_have_different_identifiers() -> None:
+    exports = [fmu_of("axis", "fmu2"), fmu_of("axis", "fmu3"), fmu_of("lugre", "fmu2")]
+    identifiers = [identifier_of(exported) for exported in exports]
+    assert len(set(identifiers)) == 3
+    for exported, identifier in zip(exports, identifiers, strict=True):
+        sources = [text for name, text in files_of(exported).items() if name.endswith(".c")]
+        assert any(identifier in text for text in sources)
+
+
+@pytest.mark.parametrize("target", VERSIONS)
+def test_voltage_of_a_motor_has_a_unit_of_the_si(target: str) -> None:
+    rig = jbf.Rig(drive=jbf.Drive("rotary", "voltage"))
+    model = jbf.Model(rig, "coulomb", parameters={"F_c": 0.5, "F_v": 0.2})
+    exported = export.to(model, target, joint_runs(rig, step_s=0.02))
+    root = ET.fromstring(files_of(exported)["modelDescription.xml"])
+    (volt,) = (unit for unit in root.iter("Unit") if unit.attrib["name"] == "V")
+    assert volt[0].attrib == {"kg": "1", "m": "2", "s": "-3", "A": "-1"}

@@ -1,5 +1,6 @@
 """C code without the core: compiled, run along reference motions and compared with the core."""
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -203,3 +204,25 @@ def test_without_a_compiler_the_ledger_says_that_the_code_was_not_run(
     monkeypatch.setenv("PATH", "")
     ledger = export.to(model_of("coulomb"), "c", joint_runs()).ledger
     assert "no C compiler" in ledger.evaluated_by
+
+
+@pytest.mark.parametrize("refused", ["friction", "math.h"])
+def test_code_that_a_working_compiler_refuses_is_an_error(
+    refused: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    script = tmp_path / "cc"
+    script.write_text(
+        "#!/bin/sh\n"
+        'for file in "$@"; do case "$file" in model.c|probe.c) '
+        f'if {shutil.which("grep")} -q "{refused}" "$file"; then '
+        'echo "$file:1: error: refused" >&2; exit 1; fi;; esac; done\n'
+        f'exec {compiler()} "$@"\n'
+    )
+    script.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    model, runs = model_of("coulomb"), joint_runs(step_s=0.02)
+    if refused == "friction":
+        with pytest.raises(jbf.InputError, match="error: refused"):
+            export.to(model, "c", runs)
+    else:
+        assert "no C compiler" in export.to(model, "c", runs).ledger.evaluated_by

@@ -13,6 +13,7 @@ import jbf
 import numpy as np
 from jbf.export import TARGETS, Settings, to
 from jbf.models.catalogue import built_in, built_in_laws, reason_not_applicable
+from jbf.reporting.export_text import STATUS
 
 PAGE = Path(__file__).resolve().parent / "reference" / "targets.md"
 HEAD = """# Export targets and what they carry
@@ -28,12 +29,11 @@ values. It lists every term with its values, and the error is computed along you
 | --- | --- |
 | exact | the same equation and values |
 | approximate | another equation, whose values are fitted or interpolated |
-| none | not carried; the loss contains the term |
+| not carried | no element of the target; the loss contains the term |
 | not included | another part of the target (mass, weight), or a property of the recording; not \
 part of the loss |
 | refused | the target has no form for this rig, law or effect |
 """
-WORDS = {"external": "not included"}
 RIGS: Mapping[bool, jbf.Rig] = {
     True: jbf.Rig.thesis(),
     False: jbf.Rig(drive=jbf.Drive("rotary", "torque")),
@@ -70,8 +70,7 @@ def statuses(law: str, effect: str | None = None) -> dict[str, str]:
     for target in TARGETS.values():
         try:
             ledger = to(model, target.name, [motion(rig)], settings=Settings()).ledger
-            status = ledger.term(effect or law).status
-            result[target.name] = WORDS.get(status, status)
+            result[target.name] = STATUS[ledger.term(effect or law).status]
         except jbf.InputError:
             result[target.name] = "refused"
     return result

@@ -32,7 +32,8 @@ class Term:
     how
         Elements of the target that carry the term, or the reason why none does.
     values
-        Values of these elements as written, by name; empty if the term is not carried.
+        Values of these elements as written, by name, in the unit of the element in the target:
+        levels in N or N m, damping in N s/m or N m s/rad. Empty if the term is not carried.
     """
 
     name: str

@@ -46,7 +46,7 @@ LUGRE = {
     "stribeck": "v_s",
 }
 """Parameters of a bristle by the names of `lugre`, in its order."""
-SHORTED = {"motorconst": "1e-6", "resistance": "1e6"}
+NEGLIGIBLE_MOTOR = {"motorconst": "1e-6", "resistance": "1e6"}
 """Electrical values of a `dcmotor` whose torque and back-EMF are negligible."""
 
 
@@ -67,13 +67,12 @@ def write_mjcf(reference: Reference, settings: Settings) -> Written:
     form, terms = joint_form(reference, elements)
     model = reference.model
     include = ET.Element("mujocoinclude")
-    for element in _sections(model, form, settings.joint, version):
-        include.append(element)
+    sections = _sections(model, form, settings.joint, version)
+    include.extend(sections)
     test = ET.Element("mujoco", model=f"{settings.joint}_friction")
     ET.SubElement(test, "compiler", angle="radian")
     option = {"timestep": _text(TIMESTEP_S), "gravity": "0 0 0", "integrator": "implicitfast"}
     ET.SubElement(test, "option", option)
-    sections = _sections(model, form, settings.joint, version)
     test.append(sections[0])
     body = ET.SubElement(ET.SubElement(test, "worldbody"), "body", name=f"{settings.joint}_body")
     kind = "hinge" if model.rig.quantities.motion == "rotary" else "slide"
@@ -83,8 +82,7 @@ def write_mjcf(reference: Reference, settings: Settings) -> Written:
     ET.SubElement(body, "joint", {**joint, "axis": "0 0 1", "armature": "0"})
     moved = _text(_armature(model) or 1.0)
     ET.SubElement(body, "inertial", pos="0 0 0", mass=moved, diaginertia=" ".join([moved] * 3))
-    for section in sections[1:]:
-        test.append(section)
+    test.extend(sections[1:])
     files = {MAIN: xml_text(include), "_test.xml": xml_text(test)}
     force, evaluated_by = _force(form, files["_test.xml"], version, reference)
     return Written(
@@ -162,7 +160,7 @@ def _sections(
         actuators = ET.Element("actuator")
         passive = {"input": "none", "motorconst": "0", "resistance": "1"}
         for name, attributes in motors.items():
-            electrical = passive if version >= PASSIVE_DCMOTOR else SHORTED
+            electrical = passive if version >= PASSIVE_DCMOTOR else NEGLIGIBLE_MOTOR
             ET.SubElement(
                 actuators,
                 "dcmotor",
@@ -214,9 +212,7 @@ def _terms(terms: tuple[Term, ...], form: JointForm, model: Model) -> tuple[Term
         values |= {name: value for name, value in powers if value}
     if form.bristle:
         carriers.append("dcmotor lugre")
-        names = ("stiffness", "damping", "coulomb", "static", "stribeck")
-        keys = ("sigma_0", "sigma_1", "F_c", "F_s", "v_s")
-        values |= {f"lugre_{n}": form.bristle[k] for n, k in zip(names, keys, strict=True)}
+        values |= {f"lugre_{name}": form.bristle[key] for name, key in LUGRE.items()}
     if form.springs:
         springs = _springs(form)
         carriers.append(f"{len(springs)} tendons with springyield")

@@ -107,7 +107,8 @@ def best_points(x: Array, y: Array, weights: Array, count: int) -> tuple[Array, 
     Returns
     -------
     x, y : ndarray
-        Corners, shape (k,), k at most `count`; the first and the last are those of the curve.
+        Corners, shape (k,), k at most `count`. The first and the last abscissa are those of the
+        curve.
     """
     n = len(x)
     if n <= count:

@@ -24,7 +24,7 @@ MOST_POINTS = 1000
 MAP_POINTS, MOST_MAP_POINTS = 32, 8192
 """Points of a cogging map per period, and largest number of all points."""
 TWINCAT_POINTS = 20
-"""Default limit of the entries of a friction table of TwinCAT CNC (P-COMP-00062)."""
+"""Default limit of the entries of a friction table of TwinCAT CNC (P-COMP-00062), one at rest."""
 
 _AT_MEDIAN = "at the median {} of the runs"
 _LOST = {
@@ -55,13 +55,21 @@ _MEDIANS = {
 
 @dataclass(frozen=True)
 class SpeedTable:
-    """Friction against signed speed, ascending; linear between its points, constant outside."""
+    """Friction against signed speed or position; linear between its points, constant outside.
+
+    Attributes
+    ----------
+    speed
+        Speeds, m/s or rad/s, or positions, m or rad, ascending, shape (k,).
+    friction
+        Friction at these points, in the force unit of the rig, shape (k,).
+    """
 
     speed: Array
     friction: Array
 
     def at(self, velocity: Array) -> Array:
-        """Friction at each velocity, shape (n,)."""
+        """Friction at each speed or position, in the force unit of the rig, shape (n,)."""
         return np.asarray(np.interp(velocity, self.speed, self.friction))
 
 
@@ -193,8 +201,10 @@ def _twincat(reference: Reference, table: SpeedTable) -> tuple[str, float] | Non
     drive = reference.model.rig.drive
     if drive is None or drive.friction != "percent":
         return None
-    knots = table.speed[table.speed > 0.0][: TWINCAT_POINTS - 1]
+    knots = table.speed[table.speed > 0.0]
     level = 0.5 * (table.at(knots) - table.at(-knots))
+    weights = weights_of(reference, knots, 1) + weights_of(reference, knots, -1)
+    knots, level = best_points(knots, level, weights, TWINCAT_POINTS - 1)
     velocity = reference.pooled(reference.velocity)
     symmetric = np.sign(velocity) * np.interp(np.abs(velocity), [0.0, *knots], [0.0, *level])
     error = float(np.sqrt(np.mean((symmetric - table.at(velocity)) ** 2)))

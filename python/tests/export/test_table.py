@@ -152,3 +152,18 @@ def test_number_of_points_out_of_range_is_refused(points: int) -> None:
     model = jbf.Model(JOINT, "coulomb")
     with pytest.raises(jbf.InputError, match="points"):
         export.to(model, "table", joint_runs(), settings=export.Settings(points=points))
+
+
+def test_twincat_list_of_a_long_table_extends_to_its_fastest_speed() -> None:
+    drive = jbf.Drive("rotary", "percent", rated_torque_n_m=2.0, gear_ratio=5.0)
+    values = {"F_c": 5.0, "F_s": 8.0, "v_s": 0.1, "F_v": 2.0}
+    model, runs = jbf.Model(jbf.Rig(drive=drive), "stribeck", parameters=values), joint_runs()
+    exported = export.to(model, "table", runs, settings=export.Settings(points=100))
+    entries = dict(line.split() for line in exported.files["_twincat.lis"].strip().split("\n"))
+    count = int(entries["frict_comp.table_entries"])
+    assert count <= 20
+    fastest = float(columns(exported.text)["velocity_rad_s"][-1])
+    last = int(entries[f"frict_comp.table[{count - 1}].in"])
+    assert last == round(1e3 * np.rad2deg(fastest))
+    level = int(entries[f"frict_comp.table[{count - 1}].out"])
+    assert level == pytest.approx(100.0 * (5.0 + 2.0 * fastest), rel=0.01)

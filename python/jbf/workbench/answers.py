@@ -5,6 +5,7 @@ Data of the length of a record are written to files.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -19,7 +20,14 @@ from jbf.diagnosis import Diagnosis, Step
 from jbf.diagnosis.power import Power
 from jbf.errors import JbfError
 from jbf.estimation.fit import Fit
-from jbf.models.catalogue import parameters_of, transition_speed
+from jbf.estimation.starting_values import with_starts
+from jbf.models.catalogue import (
+    effects,
+    find_law,
+    parameters_of,
+    reason_not_applicable,
+    transition_speed,
+)
 from jbf.models.model import Model
 from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
@@ -28,6 +36,8 @@ from jbf.reporting.words import headline_and_rest, verdict_sentence
 from jbf.workbench.marks import failure_marks
 
 Answer = dict[str, Any]
+TYPICAL = "typical_values.json"
+"""File of `typical_values` in the folder of the records of a model."""
 
 
 def of_model(comparison: Comparison) -> Answer:
@@ -84,20 +94,27 @@ def _regimes(comparison: Comparison) -> list[Answer]:
 def _stribeck(comparison: Comparison) -> Answer:
     """Friction over speed, for the page.
 
-    The data are the means of record and model per direction, the steady curve, and the regimes.
+    The data are the means of record and model per direction (1.0 or -1.0), the steady curve, and
+    the regimes.
     """
     branches = [
-        {name: value.tolist() if name != "way" else value for name, value in vars(branch).items()}
+        {
+            "direction": branch.way,
+            "speed_m_s": branch.speed_m_s.tolist(),
+            "measured_n": branch.measured_n.tolist(),
+            "scatter_n": branch.scatter_n.tolist(),
+            "modelled_n": branch.modelled_n.tolist(),
+        }
         for branch in friction_over_speed(comparison)
     ]
-    curves = {"ways": branches, "regimes_m_s": regimes(comparison.model)}
+    curves = {"directions": branches, "regimes_m_s": regimes(comparison.model)}
     return {**curves, "steady": _steady_curve(comparison)}
 
 
 def _steady_curve(comparison: Comparison) -> Answer | None:
     """Steady friction of the law over the speeds of the runs; None without a steady curve.
 
-    The data are speeds, m/s, and forces, N.
+    The data are speeds and friction in the units of the rig.
     """
     model = comparison.model
     motions = [p.motion.velocity for p in comparison.campaign.prepared]
@@ -149,7 +166,7 @@ def of_power(power: Iterable[Power], model: Model) -> list[Answer]:
     """Detection limits of effects, worded as in the reports, for the page."""
     limits = list(power)
     rows = power_rows(limits, model.law, model.rig.quantities)
-    names = ("effect", "found", "share", "alone", "like")
+    names = ("effect", "detectable", "share", "distinguishable", "confounded_with")
     return [
         {**dict(zip(names, row, strict=True)), "hidden": p.hidden}
         for p, row in zip(limits, rows, strict=True)
@@ -173,9 +190,31 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
     }  # fmt: skip
 
 
+def typical_values(comparison: Comparison) -> dict[str, float]:
+    """Values of the parameters of each further applicable effect at its typical strength.
+
+    These are the first starting values of a fit, which depend on the runs.
+    """
+    model = comparison.model
+    law = find_law(model.law)
+    further = tuple(
+        page.name
+        for page in effects().values()
+        if page.name not in model.effects and reason_not_applicable(page, model.law) is None
+    )
+    pages = parameters_of(model.law, further)
+    added = {name: page for name, page in pages.items() if "." in name}
+    starts = with_starts(added, comparison.campaign, not law.needs_bearing)
+    return {name: float(page.starts[0]) for name, page in starts.items()}
+
+
 def write_records(comparison: Comparison, folder: Path) -> Answer:
-    """Write one file per run: time, speed, friction, prediction, included samples and position."""
+    """Write the records of a comparison, and the typical values of further effects, to a folder.
+
+    The file of a run has its time, speed, friction, prediction, included samples and position.
+    """
     folder.mkdir(parents=True, exist_ok=True)
+    (folder / TYPICAL).write_text(json.dumps(typical_values(comparison)), encoding="utf-8")
     rows = zip(
         comparison.campaign.prepared,
         comparison.predictions,

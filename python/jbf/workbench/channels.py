@@ -24,6 +24,7 @@ SEGMENTS = 8
 OF_MODEL = {"model_n": "model", "residual_n": "record minus model"}
 UNITS = {
     "load_n": "N",
+    "load_n_m": "N m",
     "angle_rad": "rad",
     "temperature_c": "°C",
     "pressure_pa": "Pa",
@@ -115,7 +116,8 @@ def _values(run: Run, series: RunSeries, key: str) -> tuple[Array, Array]:
 def _derivative(time: Array, values: Array) -> Array:
     """Slope of the straight line through each sample and its neighbours, per second.
 
-    The window is `2 HALF_WINDOW + 1` samples; the ends of the record have one-sided differences.
+    The window is `2 HALF_WINDOW + 1` samples. The first and last `HALF_WINDOW` samples have the
+    slope of the first and last complete window.
     """
     width = 2 * HALF_WINDOW + 1
     if len(time) < width:

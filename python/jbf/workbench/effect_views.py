@@ -20,9 +20,22 @@ from jbf.workbench.views import series_of_run
 Array = npt.NDArray[np.float64]
 
 
-def contribution(base: Model, effect: str, run: Run) -> Array:
-    """Friction that an effect of typical strength adds to a model, shape (samples,)."""
-    richer = Model(base.rig, base.law, [*base.effects, effect], _usual(base, effect), base.clock)
+def contribution(base: Model, effect: str, values: Mapping[str, float], run: Run) -> Array:
+    """Friction that an effect adds to a model, shape (samples,).
+
+    Parameters
+    ----------
+    base, effect
+        The model, and the name of the effect.
+    values
+        Parameters of the effect by dotted name; those of other effects are ignored.
+    run
+        Run whose motion is used.
+    """
+    added = {key: value for key, value in values.items() if key.split(".")[0] == effect}
+    present = {key: p.value for key, p in base.parameters.items()}
+    effects = [*base.effects, effect]
+    richer = Model(base.rig, base.law, effects, {**present, **added}, base.clock)
     difference: Array = richer.predict(run) - base.predict(run)
     return difference
 
@@ -46,7 +59,7 @@ def edited(
         raise InputError(key=unknown, problem="is not a parameter", remedy=f"choose {[*present]}")
     changed = Model(base.rig, base.law, base.effects, {**present, **values}, base.clock)
     predicted = np.interp(run_series.time_s, run.time_s, changed.predict(run))
-    columns = {"edited_n": predicted}
+    columns = {"edited": predicted}
     for key in ("friction_n", "model_n"):
         if key in run_series.columns():
             columns[key] = run_series.columns()[key]
@@ -64,30 +77,30 @@ def signature(
 ) -> dict[str, Any]:  # fmt: skip
     """Contribution of an effect to the friction of a run, scaled to the residual.
 
-    The contribution is that at the typical strength. The factor is determined by least squares.
+    The contribution is that at the typical strength, with the starting values of a fit to these
+    runs. The factor is determined by least squares.
+
+    Raises
+    ------
+    InputError
+        The model has the effect, its law does not permit it, or the model was not compared yet.
     """
     run = session.on_bench().run(name)
     run_series = series_of_run(session, number, name)
     base = session.model(number)
     if effect in base.effects or effect not in catalogue():
-        raise InputError(problem=f"{effect} is in the model already, or unknown", remedy="choose")
-    added = np.interp(run_series.time_s, run.time_s, contribution(base, effect, run))
-    residual = run_series.residual_n
-    if residual is None:
+        problem, remedy = f"{effect} is in the model already, or unknown", "select another effect"
+        raise InputError(problem=problem, remedy=remedy)
+    residual, values = run_series.residual_n, session.typical_values(number)
+    if residual is None or values is None:
         raise InputError(problem="this model has not been compared yet", remedy="wait a moment")
+    added = np.interp(run_series.time_s, run.time_s, contribution(base, effect, values, run))
     ok = np.isfinite(residual) & np.isfinite(added)
     square = float(added[ok] @ added[ok])
     scale = float(residual[ok] @ added[ok]) / square if square > 0 else 0.0
     stretch = stretch_of(run_series.time_s, span, pixels)
     reduced = thinned(
-        run_series.time_s, {"residual_n": residual, "signature_n": scale * added}, stretch
+        run_series.time_s, {"residual_n": residual, "contribution": scale * added}, stretch
     )
     return {"times_usual": scale, **{k: listed(v, 11 if k == "time_s" else 6)
                                      for k, v in reduced.items()}}  # fmt: skip
-
-
-def _usual(base: Model, effect: str) -> dict[str, float]:
-    """Parameter values of a model with an additional effect of typical strength."""
-    values = {name: p.value for name, p in base.parameters.items()}
-    page = catalogue()[effect]
-    return {**values, **{f"{effect}.{p.name}": p.starts[0] for p in page.parameters}}

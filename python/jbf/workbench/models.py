@@ -9,6 +9,8 @@ from typing import Any
 from jbf.errors import InputError
 from jbf.workbench.banner import banner_of
 
+MOST_COMPARED = 3
+"""Maximum number of models that are drawn for comparison; each has a colour on the page."""
 LARGE = ("model", "report")
 """Keys of large contents, which the page requests separately."""
 
@@ -61,9 +63,19 @@ class Models:
         self.compared = [other for other in self.compared if other != self.current]
 
     def compare_with(self, number: int, on: bool) -> None:
-        """Draw a further model for comparison, or no longer."""
+        """Draw a further model for comparison, or no longer.
+
+        Raises
+        ------
+        InputError
+            There is no such model, or `MOST_COMPARED` models are drawn already.
+        """
         self.node(number)
-        self.compared = [other for other in self.compared if other != number] + [number] * on
+        others = [other for other in self.compared if other != number]
+        if on and len(others) >= MOST_COMPARED:
+            problem = f"{MOST_COMPARED} models are compared already"
+            raise InputError(problem=problem, remedy="deselect one of them")
+        self.compared = [*others, number] if on else others
 
     def label(self, number: int, name: str, note: str) -> None:
         """Set the name and the note of a model; empty texts remove them."""

@@ -27,7 +27,7 @@ class RunSeries:
     Attributes
     ----------
     time_s, velocity, friction
-        Time, speed and friction of the run, shape (n,).
+        Time, s, and speed and friction in the units of the rig, shape (n,).
     model_n
         Predicted friction; None without a model.
     counted
@@ -45,7 +45,10 @@ class RunSeries:
 
     @cached_property
     def residual_n(self) -> Array | None:
-        """Record minus prediction, N; NaN at excluded samples; None without a model."""
+        """Record minus prediction, in the unit of the rig.
+
+        NaN at excluded samples; None without a model.
+        """
         if self.model_n is None or self.friction is None or self.counted is None:
             return None
         return np.where(self.counted > 0, self.friction - self.model_n, np.nan)
@@ -63,7 +66,7 @@ class RunSeries:
             "residual_n": self.residual_n,
         }
         if self.counted is not None and self.friction is not None:
-            candidates["unused_n"] = np.where(self.counted > 0, np.nan, self.friction)
+            candidates["unused"] = np.where(self.counted > 0, np.nan, self.friction)
         return {name: values for name, values in candidates.items() if values is not None}
 
 

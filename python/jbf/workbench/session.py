@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 import threading
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from jbf.models.model import Model
 from jbf.models.number_format import number as written
 from jbf.models.vocabulary import AUTO
 from jbf.records.counts import count_of
+from jbf.workbench.answers import TYPICAL
 from jbf.workbench.bench import Bench
 from jbf.workbench.choices import effects_for, first_law, laws_for, units_of_rig
 from jbf.workbench.equivalent_commands import commands, python
@@ -233,6 +235,8 @@ class Session:
                 node["trials"] = []
             self.say("done", f"{node['words']}: kept; the test of further candidates was cancelled")
         else:
+            with self.lock:
+                node["trials"] = []
             self.say("error", f"{node['words']}: {answer}")
 
     def _finish(
@@ -259,6 +263,15 @@ class Session:
             return None
         names = node["record_names"]
         return {name: place / f"{index}.npy" for index, name in enumerate(names)}
+
+    def typical_values(self, number: int) -> dict[str, float] | None:
+        """Parameters of further effects at typical strength; None if `records` returns None."""
+        records = self.records(number)
+        if records is None:
+            return None
+        place = next(iter(records.values())).parent
+        values: dict[str, float] = json.loads((place / TYPICAL).read_text(encoding="utf-8"))
+        return values
 
     def model(self, number: int) -> Model:
         """Load the model with this number in the tree of models."""

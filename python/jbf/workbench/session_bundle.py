@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import shutil
 import zipfile
+import zlib
 from itertools import chain, count
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -17,6 +19,11 @@ from jbf.workbench.session_file import FILE, checked, content_of, restore
 
 SUFFIX = ".zip"
 RIG = "rig.toml"
+_UNREADABLE = (
+    zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError, KeyError, TypeError,
+    UnicodeDecodeError, json.JSONDecodeError,
+)  # fmt: skip
+"""Errors of a broken, incomplete, encrypted or unsupported archive."""
 
 
 def bundle(session: Session) -> bytes:
@@ -56,13 +63,16 @@ def open_bundle(session: Session, name: str) -> None:
     Raises
     ------
     InputError
-        The file is not an archive of a session, or is larger than `LARGEST_UPLOAD`.
+        The file is not an archive of a session, is larger than `LARGEST_UPLOAD`, or its session
+        cannot be continued. The new folder is then removed.
     """
     path = session.folder.path(name)
     try:
         with zipfile.ZipFile(path) as archive:
             content, texts = _read(archive, path)
-    except (zipfile.BadZipFile, KeyError, UnicodeDecodeError, json.JSONDecodeError) as error:
+    except InputError:
+        raise
+    except _UNREADABLE as error:
         remedy = "save it again with Session as one file"
         raise InputError(
             file=name, problem=f"is not a session of the workbench ({error})", remedy=remedy
@@ -71,10 +81,14 @@ def open_bundle(session: Session, name: str) -> None:
     stem = next(s for s in stems if not session.folder.path(s).exists())
     folder = session.folder.path(stem)
     folder.mkdir()
-    write_texts({folder / target: text for target, text in texts.items()})
-    inside = {key: f"{stem}/{content[key]}" for key in ("rig",)}
-    content |= inside | {"runs": [f"{stem}/{run}" for run in content["runs"]]}
-    restore(session, content, path)
+    try:
+        write_texts({folder / target: text for target, text in texts.items()})
+        content["rig"] = f"{stem}/{content['rig']}"
+        content["runs"] = [f"{stem}/{run}" for run in content["runs"]]
+        restore(session, content, path)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def _read(archive: zipfile.ZipFile, path: Path) -> tuple[dict[str, Any], dict[str, str]]:
@@ -87,5 +101,7 @@ def _read(archive: zipfile.ZipFile, path: Path) -> tuple[dict[str, Any], dict[st
     for name in names:
         kind = PurePosixPath(name).suffix.lower()
         if name != PurePosixPath(name).name or "\\" in name or kind not in (".toml", ".csv"):
-            raise InputError(file=path, problem=f"names {name!r}", remedy="do not use it")
+            raise InputError(
+                file=path, problem=f"names {name!r}", remedy="use only files saved by jbf"
+            )
     return content, {name: archive.read(name).decode("utf-8") for name in names}

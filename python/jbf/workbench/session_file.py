@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,18 @@ from jbf.workbench.session import Session
 
 FILE = "workbench.json"
 FORMAT = "jbf workbench 1"
+_RENAMED = {
+    "power": {"found": "detectable", "alone": "distinguishable", "like": "confounded_with"},
+    "directions": {"way": "direction"},
+}
+"""Current keys of the rows of two tables, by key of a file from before version 0.1.0."""
 
 
 def content_of(session: Session) -> dict[str, Any]:
-    """Content of the session file: names of rig and runs, trims, and all models.
+    """Content of the session file: files and names of rig and runs, trims, and all models.
+
+    The name of a run contains folders if two files have the same stem, so that it may change when
+    the files are moved.
 
     Raises
     ------
@@ -30,6 +39,7 @@ def content_of(session: Session) -> dict[str, Any]:
             "format": FORMAT,
             "rig": bench.rig_name,
             "runs": list(bench.run_names),
+            "run_names": [run.name for run in bench.runs],
             "trims": bench.trims,
             "excluded": sorted(bench.excluded),
             "law": session.law,
@@ -94,11 +104,15 @@ def restore(session: Session, content: dict[str, Any], path: Path) -> None:
     """
     try:
         bench = Bench.read(session.folder, str(content["rig"]), list(map(str, content["runs"])))
+        current_names = [run.name for run in bench.runs]
+        # Files saved before version 0.1.0 have no names.
+        saved_names = map(str, content.get("run_names", current_names))
+        names = dict(zip(saved_names, current_names, strict=True))
         for name, span in content["trims"].items():
-            bench.trim(name, (float(span[0]), float(span[1])))
+            bench.trim(names[name], (float(span[0]), float(span[1])))
         for name in content["excluded"]:
-            bench.leave_out(name, True)
-        models = Models({int(node["id"]): _node(node) for node in content["models"]})
+            bench.leave_out(names[name], True)
+        models = Models({int(node["id"]): _node(node, names) for node in content["models"]})
         law, current = str(content["law"]), content["current"]
         models.choose(current)
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
@@ -112,8 +126,30 @@ def restore(session: Session, content: dict[str, Any], path: Path) -> None:
     session.say("done", f"the session of {path.name} was restored")
 
 
-def _node(node: dict[str, Any]) -> dict[str, Any]:
-    """Check that the entry of a model has all keys that the page requires, and return it."""
+def _node(node: dict[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
+    """Check that the entry of a model has all keys that the page requires, and return it.
+
+    `names` are the current names of the runs by saved name. A test of candidates that was not
+    completed before saving is marked as not carried out.
+    """
     for key in ("id", "words", "law", "effects", "model", "rms", "noise_rms"):
         node[key]
+    node = {**node, "trials": node.get("trials") or []}
+    for key, field in (("runs", "name"), ("findings", "run")):
+        if key in node:
+            node[key] = [{**row, field: names.get(row[field], row[field])} for row in node[key]]
+    if "power" in node:
+        node["power"] = _with_current_keys(node["power"], _RENAMED["power"])
+    if "ways" in node.get("stribeck", {}):
+        branches = _with_current_keys(node["stribeck"]["ways"], _RENAMED["directions"])
+        node["stribeck"] = {**node["stribeck"], "directions": branches}
+    if "record_names" in node:
+        node["record_names"] = [names.get(name, name) for name in node["record_names"]]
     return node
+
+
+def _with_current_keys(
+    rows: Iterable[Mapping[str, Any]], renamed: Mapping[str, str]
+) -> list[dict[str, Any]]:
+    """Rows of a table with the current names of their keys."""
+    return [{renamed.get(key, key): value for key, value in row.items()} for row in rows]

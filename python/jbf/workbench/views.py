@@ -192,7 +192,7 @@ def _rms(values: Array) -> float | None:
 
 @lru_cache(maxsize=8)
 def speed_edges(runs: tuple[RunSeries, ...]) -> Array:
-    """Edges of the speed ranges (columns) of the map over runs, m/s.
+    """Edges of the speed ranges (columns) of the map over runs, in the unit of speed of the rig.
 
     The ranges are narrower near standstill, where friction changes most.
     """

@@ -15,10 +15,14 @@ import jbf
 from conftest import NOISE_N
 from jbf.cli import main
 from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.problem import Problem
 from jbf.models.catalogue import built_in
 from jbf.workbench import effect_views, saved_files, session_bundle
 from jbf.workbench.channels import channel, channels
 from jbf.workbench.files import Folder
+from jbf.workbench.jobs import Ended, Part
+from jbf.workbench.models import Models
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import FILE, load, save
 from jbf.workbench.work import Settings
@@ -66,7 +70,7 @@ def test_missing_effect_is_ranked_first_among_the_candidates(fitted: Session) ->
 
 def test_detectable_strength_falls_when_missing_effect_is_added(fitted: Session) -> None:
     powers = [fitted.models.node(number)["power"] for number in (1, 2)]
-    first, last = ({p["effect"]: p["found"] for p in power} for power in powers)
+    first, last = ({p["effect"]: p["detectable"] for p in power} for power in powers)
     assert set(first) == {t["effect"] for t in fitted.models.node(1)["trials"]}
     before, after = (found["sensor_offset"].split() for found in (first, last))
     assert before[::2] == after[::2] == ["b", "N"]
@@ -90,11 +94,11 @@ def test_fitted_model_is_kept_if_trying_candidates_is_cancelled(loaded: Session)
 
 def test_stribeck_curves_of_model_and_record_agree_in_both_directions(fitted: Session) -> None:
     result = fitted.models.node(2)["stribeck"]
-    assert [way["way"] for way in result["ways"]] == [1.0, -1.0]
-    for way in result["ways"]:
-        assert np.all(np.sign(way["speed_m_s"]) == way["way"])
-        assert np.all(np.diff(np.abs(way["speed_m_s"])) >= 0.0)
-        assert way["modelled_n"] == pytest.approx(way["measured_n"], abs=0.6)
+    assert [branch["direction"] for branch in result["directions"]] == [1.0, -1.0]
+    for branch in result["directions"]:
+        assert np.all(np.sign(branch["speed_m_s"]) == branch["direction"])
+        assert np.all(np.diff(np.abs(branch["speed_m_s"])) >= 0.0)
+        assert branch["modelled_n"] == pytest.approx(branch["measured_n"], abs=0.6)
     u_tr = fitted.models.node(2)["parameters"]["U_tr_m_s"]["value"]
     regimes = [(pytest.approx(0.2 * u_tr), "mixed"), (pytest.approx(u_tr), "full film")]
     assert list(result["regimes_m_s"]) == regimes
@@ -373,3 +377,124 @@ def test_session_file_that_names_another_place_is_refused(tmp_path: Path, name: 
         session_bundle.open_bundle(Session(Folder.of(folder)), "bad.zip")
     assert [path.name for path in folder.iterdir()] == ["bad.zip"]
     assert [path.name for path in tmp_path.iterdir()] == ["folder"]
+
+
+def test_session_with_equally_named_runs_of_two_folders_continues(
+    fitted: Session, tmp_path: Path
+) -> None:
+    """The names of these runs contain their folders, which the archive does not have."""
+    text = (fitted.folder.root / "stopgo.csv").read_text()
+    before, after = tmp_path / "before", tmp_path / "after"
+    after.mkdir()
+    for name in ("monday", "friday"):
+        (before / name).mkdir(parents=True)
+        (before / name / "run_1.csv").write_text(text)
+        text = text.replace("0.0", "0.00")
+    (before / "rig.toml").write_text((fitted.folder.root / "rig.toml").read_text())
+    session = Session(Folder.of(before))
+    session.open("rig.toml", ["monday/run_1.csv", "friday/run_1.csv"])
+    session.on_bench().trim("monday/run_1", (1.0, 20.0))
+    session.on_bench().leave_out("friday/run_1", True)
+    node = fitted.models.node(1)
+    session.models.add(None, "saved", {**node, "runs": [{"name": "friday/run_1", "rms": 2.0}]})
+    (after / "saved.zip").write_bytes(session_bundle.bundle(session))
+    session.close()
+    again = Session(Folder.of(after))
+    session_bundle.open_bundle(again, "saved.zip")
+    first, second = (run.name for run in again.on_bench().runs)
+    assert again.on_bench().trims == {first: (1.0, 20.0)}
+    assert again.on_bench().excluded == {second}
+    assert again.models.node()["runs"] == [{"name": second, "rms": 2.0}]
+    wait_until_idle(again)
+    again.close()
+
+
+def test_folder_of_an_archive_whose_session_is_broken_is_removed(tmp_path: Path) -> None:
+    content = {"format": "jbf workbench 1", "rig": "rig.toml", "runs": ["a.csv"]}
+    with zipfile.ZipFile(tmp_path / "broken.zip", "w") as archive:
+        archive.writestr("workbench.json", json.dumps(content))
+        archive.writestr("rig.toml", "")
+        archive.writestr("a.csv", "time_s\n")
+    with pytest.raises(InputError):
+        session_bundle.open_bundle(Session(Folder.of(tmp_path)), "broken.zip")
+    assert [path.name for path in tmp_path.iterdir()] == ["broken.zip"]
+
+
+@pytest.mark.parametrize("case", ["encrypted", "unknown compression", "damaged"])
+def test_archive_that_cannot_be_unpacked_is_refused(tmp_path: Path, case: str) -> None:
+    path = tmp_path / "bad.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("workbench.json", json.dumps({"format": "jbf workbench 1"}) * 20)
+    data = bytearray(path.read_bytes())
+    central = data.index(b"PK\x01\x02")
+    if case == "encrypted":
+        data[6] |= 1
+        data[central + 8] |= 1
+    elif case == "unknown compression":
+        data[8] = data[central + 10] = 99
+    else:
+        data[30 + len("workbench.json")] = 0xFF
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="is not a session"):
+        session_bundle.open_bundle(Session(Folder.of(tmp_path)), "bad.zip")
+
+
+def test_unfinished_test_of_candidates_is_not_continued_after_loading(
+    fitted: Session, tmp_path: Path
+) -> None:
+    """A session that was saved, or whose job failed, while the candidates were being tested."""
+    node = fitted.models.node(1)
+    trials, node["trials"] = node["trials"], None
+    try:
+        (tmp_path / "saved.zip").write_bytes(session_bundle.bundle(fitted))
+    finally:
+        node["trials"] = trials
+    session = Session(Folder.of(tmp_path))
+    session_bundle.open_bundle(session, "saved.zip")
+    assert session.models.node(1)["trials"] == []
+    wait_until_idle(session)
+    session.close()
+
+
+def test_failed_test_of_candidates_keeps_the_model_without_candidates(
+    loaded: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fitted_model = {
+        "law": "journal", "effects": [], "model": "", "rms": 1.0, "noise_rms": 1.0, "trials": None,
+    }  # fmt: skip
+
+    def start(words: str, order: object, on_end: Ended, part: Part) -> None:
+        part(fitted_model)
+        on_end("error", "not enough memory")
+
+    monkeypatch.setattr(loaded.jobs, "start", start)
+    loaded.begin("round", (), None)
+    assert loaded.models.node()["trials"] == []
+    assert loaded.message["kind"] == "error"
+
+
+def test_fourth_model_cannot_be_compared() -> None:
+    models = Models()
+    for _ in range(5):
+        models.add(None, "fit", {})
+    for number in (1, 2, 3):
+        models.compare_with(number, True)
+    models.compare_with(2, True)  # already compared
+    with pytest.raises(InputError, match="compared already"):
+        models.compare_with(4, True)
+    models.compare_with(1, False)
+    models.compare_with(4, True)
+    assert models.compared == [3, 2, 4]
+
+
+def test_contribution_of_an_effect_uses_the_starting_values_of_these_runs(fitted: Session) -> None:
+    bench = fitted.on_bench()
+    campaign = Campaign.prepare(bench.rig, bench.runs)
+    problem = Problem(campaign, "journal", "journal", ["stribeck_excess"])
+    starts = dict(zip(problem.names, problem.starts({})[0].tolist(), strict=True))
+    values = fitted.typical_values(1)
+    assert values is not None
+    added = {name: v for name, v in starts.items() if name.startswith("stribeck_excess.")}
+    assert {name: values[name] for name in added} == added
+    answer = effect_views.signature(fitted, 1, "stribeck_excess", "stopgo", (None, None), 200)
+    assert np.any(answer["contribution"])

@@ -29,7 +29,7 @@ export function showCandidates(page, place) {
       t ? h("p", {}, h("span", { class: "gain" }, node.noise_rms > 0 ? `${times(node.rms / node.noise_rms)} → ${times(t.rms / node.noise_rms)} the noise` : `${number(node.rms)} → ${number(t.rms)} ${page.units.force}`), " ",
         h("span", { class: `tag ${tint}` }, words)) : null,
       t ? h("p", { class: "faint" }, sentence(t.reason)) : null,
-      p && !(t?.evidence > 0) ? h("p", { class: "faint" }, `These runs show it from ${p.found}${p.hidden ? ", which is more than is typical" : ""}.${p.like ? ` Confounded with ${p.like}.` : ""}`) : null,
+      p && !(t?.evidence > 0) ? h("p", { class: "faint" }, `These runs show it from ${p.detectable}${p.hidden ? ", which is more than is typical" : ""}.${p.confounded_with ? ` Confounded with ${p.confounded_with}.` : ""}`) : null,
       h("div", { class: "choices" },
         h("button", { class: t?.outcome === "added" ? "main" : "", "data-key": `add-${name}`, disabled: busy, "aria-label": `add ${name}`, onclick: () => page.do("fit", { effects: [...(node?.effects ?? []), name], parent }) }, "Add"),
         h("button", { "data-key": `sketch-${name}`, disabled: !node, "aria-pressed": String(page.effect === name), "aria-label": `show ${name}`, onclick: () => page.look({ effect: name }) }, "Show"),

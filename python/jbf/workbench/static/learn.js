@@ -69,7 +69,7 @@ export class LearnSection {
       return;
     }
     if (this.latest !== ask) return;
-    this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "predicted contribution", "beside", { width: 1.8 })],
+    this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("contribution", "predicted contribution", "beside", { width: 1.8 })],
       zoomed: (from, to) => page.look({ span: [from, to] }) });
     this.chart.show(found);
     put(this.sketched, `${page.effect} on ${page.run}: fits the residual best at ${number(found.times_usual, 2)} times its typical strength. Select another run on the left.`);

@@ -56,7 +56,7 @@ export class Parameters {
       return;
     }
     if (this.latest !== ask) return;
-    this.chart ??= new Chart(this.plot, { unit: page.units.force, height: 200, curves: [curve("friction_n", "measured", "measured"), curve("model_n", "model", "model"), curve("edited_n", "edited", "edited", { width: 1.8 })], zoomed: (from, to) => page.look({ span: [from, to] }) });
+    this.chart ??= new Chart(this.plot, { unit: page.units.force, height: 200, curves: [curve("friction_n", "measured", "measured"), curve("model_n", "model", "model"), curve("edited", "edited", "edited", { width: 1.8 })], zoomed: (from, to) => page.look({ span: [from, to] }) });
     this.chart.show(found);
     const own = node.runs.find((r) => r.name === page.run)?.rms;
     put(this.words, key("edited", `${page.run} with the edited values: RMS ${number(found.rms)} ${page.units.force}`), own === undefined ? "" : ` (the model: ${number(own)})`);

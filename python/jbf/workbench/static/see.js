@@ -42,7 +42,7 @@ export class SeeSection {
   forceCurves() {
     const { current, compared } = this.page.state;
     return [curve("friction_n", "measured", "measured"),
-      ...(current === null ? [] : [hollow("unused_n", "measured, not used by the fit", "measured"), curve("model_n", "model", "model", { width: 1.6 })]),
+      ...(current === null ? [] : [hollow("unused", "measured, not used by the fit", "measured"), curve("model_n", "model", "model", { width: 1.6 })]),
       ...compared.map((id, i) => curve(`model_${id}`, this.named(id), TINTS[i], { dash: [6, 4], width: 1.4 }))];
   }
 

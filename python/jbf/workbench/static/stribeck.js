@@ -1,4 +1,4 @@
-// Friction over the speed: means of record and model each way, the law alone, the regimes; a drag selects speeds.
+// Friction over the speed: means of record and model in each direction, the law alone, the regimes; a drag selects speeds.
 import { colour, h, number } from "./dom.js";
 import { Axes } from "./axes.js";
 
@@ -27,7 +27,7 @@ export class Stribeck {
   }
 
   table() {
-    const ways = this.node?.stribeck?.ways ?? [], all = (name) => ways.flatMap((way) => way[name]);
+    const branches = this.node?.stribeck?.directions ?? [], all = (name) => branches.flatMap((branch) => branch[name]);
     return { names: ["speed", "measured", "standard deviation", "model"], columns: [all("speed_m_s"), all("measured_n"), all("scatter_n"), all("modelled_n")] };
   }
 
@@ -35,26 +35,29 @@ export class Stribeck {
 
   draw() {
     if (!this.node?.stribeck || !this.canvas.clientWidth) return;
-    const { ways, regimes_m_s: ends, steady } = this.node.stribeck;
-    const xs = ways.flatMap((w) => w.speed_m_s), ys = ways.flatMap((w) => [...w.measured_n.map((v, i) => v + w.scatter_n[i]), ...w.measured_n.map((v, i) => v - w.scatter_n[i]), ...w.modelled_n]);
+    const { directions: branches, regimes_m_s: ends, steady } = this.node.stribeck;
+    const xs = branches.flatMap((b) => b.speed_m_s);
+    const ys = branches.flatMap((b) => [...b.measured_n.map((v, i) => v + b.scatter_n[i]), ...b.measured_n.map((v, i) => v - b.scatter_n[i]), ...b.modelled_n]);
     this.axes = new Axes(this.canvas, this.height, Axes.around(xs, ys), [`${this.units.velocity} (${this.units.speed})`, `${this.units.friction} (${this.units.force})`]);
     const { ctx } = this.axes, x = (v) => this.axes.x(v), y = (v) => this.axes.y(v);
     if (this.speeds) this.axes.band(x(this.speeds[0]), x(this.speeds[1]), "selected");
     if (this.drag) this.axes.band(...this.drag, "selected");
     ctx.save(); this.axes.clip();
-    for (const way of ways) {
+    for (const branch of branches) {
       ctx.strokeStyle = ctx.fillStyle = colour("measured"); ctx.lineWidth = 1;
-      way.speed_m_s.forEach((v, i) => {
-        ctx.beginPath(); ctx.moveTo(x(v), y(way.measured_n[i] - way.scatter_n[i])); ctx.lineTo(x(v), y(way.measured_n[i] + way.scatter_n[i])); ctx.stroke();
-        ctx.beginPath(); ctx.arc(x(v), y(way.measured_n[i]), 3.2, 0, 7); ctx.fill();
+      branch.speed_m_s.forEach((v, i) => {
+        ctx.beginPath(); ctx.moveTo(x(v), y(branch.measured_n[i] - branch.scatter_n[i])); ctx.lineTo(x(v), y(branch.measured_n[i] + branch.scatter_n[i])); ctx.stroke();
+        ctx.beginPath(); ctx.arc(x(v), y(branch.measured_n[i]), 3.2, 0, 7); ctx.fill();
       });
-      this.axes.path(way.speed_m_s, way.modelled_n, "model", 2);
+      this.axes.path(branch.speed_m_s, branch.modelled_n, "model", 2);
     }
-    if (steady) for (const way of ways) this.axes.path(steady.velocity_m_s.map((v) => way.way * v), steady.friction_n.map((f) => way.way * f), "ink", 1.3, [2, 3]);
+    if (steady) for (const { direction } of branches) {
+      this.axes.path(steady.velocity_m_s.map((v) => direction * v), steady.friction_n.map((f) => direction * f), "ink", 1.3, [2, 3]);
+    }
     ctx.setLineDash([3, 4]); ctx.lineWidth = 1; ctx.strokeStyle = ctx.fillStyle = colour("ink"); ctx.textAlign = "left";
-    for (const [speed, name] of ends) for (const way of [1, -1]) {
-      this.axes.upright(way * speed);
-      if (way > 0) ctx.fillText(name, x(speed) + 3, y(this.axes.box[2]) - 5);
+    for (const [speed, name] of ends) for (const direction of [1, -1]) {
+      this.axes.upright(direction * speed);
+      if (direction > 0) ctx.fillText(name, x(speed) + 3, y(this.axes.box[2]) - 5);
     }
     ctx.restore();
   }

@@ -19,5 +19,5 @@ export function correlations({ names, matrix }) {
 
 export function power(rows) {
   return h("div", { class: "scroll" }, h("table", {}, head(["effect", "detectable from", "of friction", "distinct from", "confounded with"]),
-    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.found, p.share, p.alone, p.like].map((words) => h("td", { class: "n" }, words)))))));
+    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.detectable, p.share, p.distinguishable, p.confounded_with].map((words) => h("td", { class: "n" }, words)))))));
 }

@@ -38,6 +38,8 @@ class Trial:
         `replaced`: added, and later replaced by another effect.
     reason
         Reason for the outcome.
+    unconfirmed
+        Whether it was rejected because the held-out runs do not confirm its gain; not in `to_dict`.
     """
 
     effect: str
@@ -45,10 +47,11 @@ class Trial:
     evidence: float
     outcome: Outcome
     reason: str
+    unconfirmed: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
-        return dict(vars(self))
+        return {key: value for key, value in vars(self).items() if key != "unconfirmed"}
 
 
 @dataclass(frozen=True)

@@ -143,7 +143,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         elif gain > 0:
             outcome = "rejected"
             reason = f"evidence is {best - gain:.0f} below that of {leader}"
-        trials.append(Trial(name, rms, float(gain), outcome, reason))
+        trials.append(Trial(name, rms, float(gain), outcome, reason, name in unconfirmed))
     behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
     if behind > best:
         # The leader that these candidates were compared with was not accepted.

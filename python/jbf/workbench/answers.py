@@ -158,7 +158,7 @@ def of_step(step: Step) -> Answer:
     """Held-out error of a step of the ledger, and its candidates, for the page."""
     return {
         "held_out_rms": step.held_out_rms if math.isfinite(step.held_out_rms) else None,
-        "trials": [t.to_dict() for t in step.trials],
+        "trials": [{**t.to_dict(), "unconfirmed": t.unconfirmed} for t in step.trials],
     }
 
 

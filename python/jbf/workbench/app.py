@@ -12,7 +12,7 @@ from typing import Any
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware import Middleware
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
@@ -76,6 +76,8 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
                 async for block in request.stream():
                     file.write(block)
             os.replace(part, path)
+        except ClientDisconnect:
+            return _refused("the upload was cancelled", 400)
         finally:
             part.unlink(missing_ok=True)
         session.changed()

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from jbf.errors import InputError
 from jbf.workbench.answers import Answer
-from jbf.workbench.work import STOP, Order, main
+from jbf.workbench.work import STOP, Kind, Order, main
 
 Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
@@ -30,6 +30,8 @@ class Job:
     ----------
     words
         Description of the job.
+    kind
+        Kind of the order, or `read` for the reading of files.
     begun
         Start on the monotonic clock, s.
     message, done, total
@@ -37,6 +39,7 @@ class Job:
     """
 
     words: str
+    kind: Kind | Literal["read"] = "read"
     begun: float = field(default_factory=time.monotonic)
     message: str = "starting"
     done: int = 0
@@ -46,6 +49,7 @@ class Job:
         """Data of the job for the page."""
         return {
             "words": self.words,
+            "kind": self.kind,
             "message": self.message,
             "done": self.done,
             "total": self.total,
@@ -88,7 +92,7 @@ class Jobs:
             context = multiprocessing.get_context("spawn")
             mine, theirs = context.Pipe()
             process = context.Process(target=main, args=(theirs, order), daemon=True)
-            self.job, self._process, self._cancelled = Job(words), process, False
+            self.job, self._process, self._cancelled = Job(words, order.kind), process, False
             self._connection = mine
         process.start()
         theirs.close()

@@ -115,12 +115,14 @@ def quantities() -> list[dict[str, Any]]:
     """Possible quantities of a column: key, description, offered units."""
     entries = []
     for key in (*WORDS, *(k for k in KNOWN if k not in WORDS)):
-        required = wanted_unit(key)
-        units = [
-            u for u in SUGGESTED if (unit := parse_unit(u)) is not None and unit.fits(required)
-        ]
-        entries.append({"key": key, "words": WORDS.get(key, key), "units": units})
+        entries.append({"key": key, "words": WORDS.get(key, key), "units": units_for(key)})
     return entries
+
+
+def units_for(key: str) -> list[str]:
+    """Suggested units of a column of a run."""
+    required = wanted_unit(key)
+    return [u for u in SUGGESTED if (unit := parse_unit(u)) is not None and unit.fits(required)]
 
 
 def form_of(text: str) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from jbf.importing.map_text import CHOICES as COMMENTS
 from jbf.importing.mapping import Map
 from jbf.importing.targets import FRICTION, MOTION, wanted_unit
 from jbf.units.unit import parse_unit
-from jbf.workbench.map_form import PLAIN, SUGGESTED, WORDS
+from jbf.workbench.map_form import PLAIN, WORDS, units_for
 
 Point = dict[str, Any]
 BY_UNIT = {
@@ -86,13 +86,9 @@ def _of_column(
     """Question about an open expression of a column of a run."""
     words, plain = WORDS.get(key, key), PLAIN.fullmatch(expression)
     if plain is not None and plain["unit"] == OPEN:
-        required = wanted_unit(key)
-        units = [
-            u for u in SUGGESTED if (unit := parse_unit(u)) is not None and unit.fits(required)
-        ]
         return {"kind": "unit", "key": key, "column": plain["column"],
                 "title": f"In which unit is {plain['column']} ({words})?",
-                "choices": [(u, u) for u in units]}  # fmt: skip
+                "choices": [(u, u) for u in units_for(key)]}  # fmt: skip
     if expression.strip() == OPEN:
         used = " ".join(mapping.columns.values())
         names = [str(c["name"]) for c in columns if c["kind"] != "word"]

@@ -1,13 +1,16 @@
 """Access control of the workbench: foreign hosts, origins, tokens, uploads, paths."""
 
+import asyncio
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, MutableMapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
+from jbf.workbench.app import create_app
 from jbf.workbench.guard import POLICY
 from jbf.workbench.session import Session
 from starlette.testclient import TestClient
@@ -172,3 +175,28 @@ def test_map_that_names_an_outside_file_is_refused(
 )
 def test_source_files_are_not_served_through_static_paths(client: TestClient, path: str) -> None:
     assert client.get(path).status_code == 404
+
+
+def test_cancelled_upload_leaves_no_file(session: Session, campaign: Path) -> None:
+    """The client disconnects between two blocks of the body."""
+    messages = [
+        {"type": "http.request", "body": b"time_s\n", "more_body": True},
+        {"type": "http.disconnect"},
+    ]
+    headers = {"host": f"127.0.0.1:{PORT}", "x-jbf-token": TOKEN}
+    scope = {
+        "type": "http", "method": "POST", "path": "/api/upload", "raw_path": b"/api/upload",
+        "query_string": b"name=half.csv", "root_path": "", "scheme": "http",
+        "headers": [(k.encode(), v.encode()) for k, v in headers.items()],
+    }  # fmt: skip
+    sent: list[MutableMapping[str, Any]] = []
+
+    async def receive() -> MutableMapping[str, Any]:
+        return messages.pop(0)
+
+    async def send(message: MutableMapping[str, Any]) -> None:
+        sent.append(message)
+
+    asyncio.run(create_app(session, TOKEN, PORT)(scope, receive, send))
+    assert sent[0]["status"] == 400
+    assert not [path for path in campaign.iterdir() if "half.csv" in path.name]

@@ -21,14 +21,19 @@ let tell = () => {};
 export const onBusy = (told) => { tell = told; };
 export const cancelRequests = () => { for (const control of pending) control.abort(); };
 
-async function request(address, options) {
-  const control = new AbortController();
+// The result of `send()`, which `control.abort()` cancels.
+async function tracked(control, send) {
   pending.add(control);
   const timer = setTimeout(() => tell(true), BUSY_AFTER_MS);
-  try { return await answered(await fetch(address, { ...options, headers, signal: control.signal })); } finally {
+  try { return await send(); } finally {
     clearTimeout(timer); pending.delete(control);
     if (!pending.size) tell(false);
   }
+}
+
+function request(address, options) {
+  const control = new AbortController();
+  return tracked(control, async () => answered(await fetch(address, { ...options, headers, signal: control.signal })));
 }
 
 export async function get(name, parameters = {}) {
@@ -43,13 +48,14 @@ export async function post(name, parameters = {}) {
   return (await request(`/api/${name}`, { method: "POST", body: JSON.stringify(parameters) })).json();
 }
 
-// `progress(share)` is called with the share that was sent.
+// `progress(share)` is called with the share that was sent. XMLHttpRequest, since fetch reports no progress.
 export function upload(file, progress) {
-  return new Promise((resolve, reject) => {
-    const request = new XMLHttpRequest();
+  const request = new XMLHttpRequest();
+  return tracked(request, () => new Promise((resolve, reject) => {
     request.open("POST", `/api/upload?name=${encodeURIComponent(file.name)}`);
     for (const [name, value] of Object.entries(headers)) request.setRequestHeader(name, value);
     request.upload.onprogress = (event) => { if (event.lengthComputable && file.size > 1e7) progress(event.loaded / event.total); };
+    request.onabort = () => reject(new DOMException("", "AbortError"));
     request.onerror = () => reject(new Error(`${file.name}: the connection was lost`));
     request.onload = () => {
       let answer = {};
@@ -57,7 +63,7 @@ export function upload(file, progress) {
       if (request.status === 200) resolve(answer); else reject(new Error(answer.error));
     };
     request.send(file);
-  });
+  }));
 }
 
 // A text as a file of the browser's own.

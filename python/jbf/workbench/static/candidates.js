@@ -6,7 +6,7 @@ const MOST = 6;
 const OUTCOME = {
   added: ["good", "largest gain; held-out runs agree"], ties: ["warn", "fits as well as another candidate"],
   rejected: ["faint", "explains less than the best"], negligible: ["faint", "too small to matter"],
-  "no gain": ["faint", "no more than chance"], confounder: ["warn", "the runs disagree on its size"], replaced: ["faint", "replaced by another effect"],
+  "no gain": ["faint", "no more than chance"], confounder: ["warn", "not named"], replaced: ["faint", "replaced by another effect"],
 };
 
 const sentence = (words) => `${words.charAt(0).toUpperCase()}${words.slice(1)}.`;
@@ -22,7 +22,7 @@ export function showCandidates(page, place) {
   const summary = new Map(state.effects.map((e) => [e.name, e.summary]));
   const parent = node?.id ?? null;
   const card = (name, t) => {
-    const p = strength.get(name), [tint, words] = t?.reason.includes("held-out") && t.outcome === "rejected" ? ["warn", "held-out runs disagree"] : OUTCOME[t?.outcome] ?? [];
+    const p = strength.get(name), [tint, words] = t?.unconfirmed ? ["warn", "held-out runs disagree"] : OUTCOME[t?.outcome] ?? [];
     return h("section", { class: `card${page.effect === name ? " now" : ""}`, "aria-label": name, "data-effect": name },
       h("div", { class: "top" }, h("h3", {}, name), h("span", { class: "shape" })),
       h("p", {}, sentence(summary.get(name) ?? "")),

@@ -69,7 +69,8 @@ export class Files {
   async take(files) {
     const names = [];
     for (const file of files) {
-      try { names.push((await upload(file, (share) => this.page.say(`Copying ${file.name}: ${Math.round(100 * share)} %`, "doing"))).file); } catch (error) { this.page.say(error.message); break; }
+      const progress = (share) => this.page.say(`Copying ${file.name}: ${Math.round(100 * share)} %`, "doing");
+      try { names.push((await upload(file, progress)).file); } catch (error) { this.page.failed(error); break; }
     }
     this.picked = new Set(names);
     const session = names.find((name) => name.endsWith(".zip"));

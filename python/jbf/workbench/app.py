@@ -60,7 +60,10 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
                 if not isinstance(content, dict):
                     return _refused("the body is not an object", 400)
                 parameters = content
-            return await run_in_threadpool(_answered, action, session, parameters)
+            try:
+                return await run_in_threadpool(_answered, action, session, parameters)
+            except asyncio.CancelledError:  # Ctrl-C during the request
+                return _refused("the server has stopped", 503)
 
         return answer
 

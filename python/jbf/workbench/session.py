@@ -322,7 +322,8 @@ class Session:
         return self.readings.cancel() or self.jobs.cancel()
 
     def close(self) -> None:
-        """Stop the running job and delete the temporary files."""
+        """Stop the running reading and job, and delete the temporary files."""
+        self.readings.cancel()
         self.jobs.cancel(at_once=True)
         self._kept.cleanup()
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import re
+import threading
 from collections.abc import Iterator, MutableMapping
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,11 @@ import pytest
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
+from jbf.workbench import actions
 from jbf.workbench.app import create_app
 from jbf.workbench.guard import POLICY
 from jbf.workbench.session import Session
+from starlette.applications import Starlette
 from starlette.testclient import TestClient
 from workbench_parts import PORT, TOKEN, client_of
 
@@ -177,26 +180,62 @@ def test_source_files_are_not_served_through_static_paths(client: TestClient, pa
     assert client.get(path).status_code == 404
 
 
+Message = MutableMapping[str, Any]
+
+
+async def request(app: Starlette, target: str, messages: list[Message]) -> int:
+    """Status of a POST request whose client sends these messages, without a server."""
+    path, _, query = target.partition("?")
+    headers = {"host": OWN, "x-jbf-token": TOKEN}
+    scope = {
+        "type": "http", "method": "POST", "path": path, "raw_path": path.encode(),
+        "query_string": query.encode(), "root_path": "", "scheme": "http",
+        "headers": [(k.encode(), v.encode()) for k, v in headers.items()],
+    }  # fmt: skip
+    sent: list[Message] = []
+
+    async def receive() -> Message:
+        return messages.pop(0)
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    await app(scope, receive, send)
+    return int(sent[0]["status"])
+
+
 def test_cancelled_upload_leaves_no_file(session: Session, campaign: Path) -> None:
     """The client disconnects between two blocks of the body."""
-    messages = [
+    messages: list[Message] = [
         {"type": "http.request", "body": b"time_s\n", "more_body": True},
         {"type": "http.disconnect"},
     ]
-    headers = {"host": f"127.0.0.1:{PORT}", "x-jbf-token": TOKEN}
-    scope = {
-        "type": "http", "method": "POST", "path": "/api/upload", "raw_path": b"/api/upload",
-        "query_string": b"name=half.csv", "root_path": "", "scheme": "http",
-        "headers": [(k.encode(), v.encode()) for k, v in headers.items()],
-    }  # fmt: skip
-    sent: list[MutableMapping[str, Any]] = []
-
-    async def receive() -> MutableMapping[str, Any]:
-        return messages.pop(0)
-
-    async def send(message: MutableMapping[str, Any]) -> None:
-        sent.append(message)
-
-    asyncio.run(create_app(session, TOKEN, PORT)(scope, receive, send))
-    assert sent[0]["status"] == 400
+    app = create_app(session, TOKEN, PORT)
+    assert asyncio.run(request(app, "/api/upload?name=half.csv", messages)) == 400
     assert not [path for path in campaign.iterdir() if "half.csv" in path.name]
+
+
+def test_request_that_runs_when_the_server_stops_is_answered(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, stopped = threading.Event(), threading.Event()
+
+    def long_action(*_: object) -> None:
+        begun.set()
+        stopped.wait(60.0)
+
+    monkeypatch.setitem(actions.COMMANDS, "look", long_action)
+    app = create_app(session, TOKEN, PORT)
+
+    async def stop_during_request() -> int:
+        body: list[Message] = [{"type": "http.request", "body": b"{}"}]
+        task = asyncio.create_task(request(app, "/api/look", body))
+        while not begun.is_set():
+            await asyncio.sleep(0.01)
+        task.cancel()
+        try:
+            return await task
+        finally:
+            stopped.set()
+
+    assert asyncio.run(stop_during_request()) == 503

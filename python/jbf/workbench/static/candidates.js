@@ -26,12 +26,16 @@ export function showCandidates(page, place) {
     return h("section", { class: `card${page.effect === name ? " now" : ""}`, "aria-label": name, "data-effect": name },
       h("div", { class: "top" }, h("h3", {}, name), h("span", { class: "shape" })),
       h("p", {}, sentence(summary.get(name) ?? "")),
-      t ? h("p", {}, h("span", { class: "gain" }, node.noise_rms > 0 ? `${times(node.rms / node.noise_rms)} → ${times(t.rms / node.noise_rms)} the noise` : `${number(node.rms)} → ${number(t.rms)} ${page.units.force}`), " ",
+      t ? h("p", {}, h("span", { class: "gain" }, node.noise_rms > 0
+        ? `${times(node.rms / node.noise_rms)} → ${times(t.rms / node.noise_rms)} the noise`
+        : `${number(node.rms)} → ${number(t.rms)} ${page.units.force}`), " ",
         h("span", { class: `tag ${tint}` }, words)) : null,
       t ? h("p", { class: "faint" }, sentence(t.reason)) : null,
-      p && !(t?.evidence > 0) ? h("p", { class: "faint" }, `These runs show it from ${p.detectable}${p.hidden ? ", which is more than is typical" : ""}.${p.confounded_with ? ` Confounded with ${p.confounded_with}.` : ""}`) : null,
+      p && !(t?.evidence > 0) ? h("p", { class: "faint" },
+        `These runs show it from ${p.detectable}${p.hidden ? ", which is more than is typical" : ""}.${p.confounded_with ? ` Confounded with ${p.confounded_with}.` : ""}`) : null,
       h("div", { class: "choices" },
-        h("button", { class: t?.outcome === "added" ? "main" : "", "data-key": `add-${name}`, disabled: busy, "aria-label": `add ${name}`, onclick: () => page.do("fit", { effects: [...(node?.effects ?? []), name], parent }) }, "Add"),
+        h("button", { class: t?.outcome === "added" ? "main" : "", "data-key": `add-${name}`, disabled: busy, "aria-label": `add ${name}`,
+          onclick: () => page.do("fit", { effects: [...(node?.effects ?? []), name], parent }) }, "Add"),
         h("button", { "data-key": `sketch-${name}`, disabled: !node, "aria-pressed": String(page.effect === name), "aria-label": `show ${name}`, onclick: () => page.look({ effect: name }) }, "Show"),
         h("button", { class: "quiet", "data-key": `about-${name}`, "aria-label": `about ${name}`, onclick: () => about(page, name) }, "Equation and limits")));
   };
@@ -56,7 +60,8 @@ async function shapes(place) {
   for (const card of place.querySelectorAll("[data-effect]")) {
     const curves = found[card.dataset.effect];
     if (!curves) continue;
-    const line = (values, stroke) => s("polyline", { points: values.map((v, i) => `${(1 + 90 * i / (values.length - 1)).toFixed(1)},${(21 - 19 * v).toFixed(1)}`).join(" "), fill: "none", stroke, "stroke-width": 1.4 });
+    const points = (values) => values.map((v, i) => `${(1 + 90 * i / (values.length - 1)).toFixed(1)},${(21 - 19 * v).toFixed(1)}`).join(" ");
+    const line = (values, stroke) => s("polyline", { points: points(values), fill: "none", stroke, "stroke-width": 1.4 });
     card.querySelector(".shape").replaceChildren(s("svg", { class: "sketch", viewBox: "0 0 92 42", role: "img", "aria-label": `friction along time without and with ${card.dataset.effect}` },
       line(curves[1], "var(--beside)"), line(curves[0], "var(--measured)")));
   }

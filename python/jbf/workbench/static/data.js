@@ -65,7 +65,8 @@ export class DataSection {
       return this.page.do("trim", { run: run.name, from_s: span[0], to_s: span[1] });
     };
     const end = (which, words, value) => h("label", {}, `${words} `,
-      h("input", { type: "number", class: "short", step: "any", value: Number(value.toPrecision(8)), "aria-label": `${words}, s`, "data-key": `trim-n-${which}`, onchange: (e) => set(which, e.target.value) }), " s");
+      h("input", { type: "number", class: "short", step: "any", value: Number(value.toPrecision(8)), "aria-label": `${words}, s`,
+        "data-key": `trim-n-${which}`, onchange: (e) => set(which, e.target.value) }), " s");
     put(this.trims, h("div", { class: "row" }, end(0, "Use from", from), end(1, "to", to),
       h("button", { "data-key": "untrim", disabled: !run.trim, onclick: () => this.page.do("trim", { run: run.name }) }, "Reset trim"),
       h("span", { class: "faint" }, "Handles in the plot trim the run; drag to zoom, double-click to reset.")),

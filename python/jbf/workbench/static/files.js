@@ -22,8 +22,11 @@ export class Files {
     const others = [
       campaigns.length ? h("section", {}, h("h2", {}, some ? "Open another rig with its runs" : "Rigs and their runs in this folder"),
         h("ul", { class: "plain" }, campaigns.map((c) => h("li", {},
-          h("button", { "data-key": `open-${c.rig}`, "aria-label": `open ${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"), ` ${c.rig}, ${c.runs.length} run${c.runs.length === 1 ? "" : "s"}`)))) : null,
-      found.sessions.length ? h("section", {}, h("h2", {}, "Saved sessions"), h("ul", { class: "plain" }, found.sessions.map((name) => h("li", {}, h("button", { "data-key": `session-${name}`, "aria-label": `open ${name}`, onclick: () => this.page.do("open_session", { file: name }).then((ok) => ok && this.done()) }, "Open"), ` ${name}`)))) : null,
+          h("button", { "data-key": `open-${c.rig}`, "aria-label": `open ${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"),
+          ` ${c.rig}, ${c.runs.length} run${c.runs.length === 1 ? "" : "s"}`)))) : null,
+      found.sessions.length ? h("section", {}, h("h2", {}, "Saved sessions"), h("ul", { class: "plain" }, found.sessions.map((name) => h("li", {},
+        h("button", { "data-key": `session-${name}`, "aria-label": `open ${name}`,
+          onclick: () => this.page.do("open_session", { file: name }).then((ok) => ok && this.done()) }, "Open"), ` ${name}`)))) : null,
       this.recordings(found), this.picker(found, open),
       found.more ? h("p", { class: "faint" }, "More files are not shown: choose a smaller folder.") : null,
     ];

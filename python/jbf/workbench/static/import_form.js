@@ -83,11 +83,14 @@ export class ImportForm {
         h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close"),
         h("label", {}, "as folder ", into)),
       this.plots,
-      this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", {}, h("thead", {}, h("tr", {}, ["column", "course", "first values", "quantity", "unit", "negate", "read as"].map((w) => h("th", {}, w)))),
+      this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", {},
+        h("thead", {}, h("tr", {}, ["column", "course", "first values", "quantity", "unit", "negate", "read as"].map((w) => h("th", {}, w)))),
         h("tbody", {}, found.columns.map((column) => this.row(column)))), this.formulas(), this.rig())),
       this.part("map-text", "Map as text (formulas, cuts, clocks)", text));
     if (answer?.curves) this.preview(answer);
-    else put(this.plots, h("h3", {}, "The columns, first rows"), h("div", { class: "cards" }, found.columns.filter((c) => c.shape).map((c) => h("figure", { class: "course" }, course(c.shape), h("figcaption", {}, `${c.name}: ${c.least} to ${c.most}${c.unit && !c.name.includes(`[${c.unit}]`) ? ` ${c.unit}` : ""}`)))));
+    else put(this.plots, h("h3", {}, "The columns, first rows"), h("div", { class: "cards" },
+      found.columns.filter((c) => c.shape).map((c) => h("figure", { class: "course" }, course(c.shape),
+        h("figcaption", {}, `${c.name}: ${c.least} to ${c.most}${c.unit && !c.name.includes(`[${c.unit}]`) ? ` ${c.unit}` : ""}`)))));
   }
 
   part(key, words, ...content) {
@@ -112,9 +115,14 @@ export class ImportForm {
       h("div", { class: "top" }, h("h3", {}, point.title), column ? course(column.shape) : null),
       column ? h("p", { class: "faint" }, `first values: ${column.first.join(", ")}`) : null,
       point.choices.length === 0 ? h("label", {}, point.example ? `such as ${point.example} ` : "number ", field("value", point.title))
-        : many ? h("select", { "aria-label": point.title, "data-key": name, onchange: (e) => set(e.target.value) }, h("option", { value: "" }, "choose …"), point.choices.map(([value, words]) => h("option", { value, selected: value === point.chosen }, words)))
-          : h("div", { class: "choices" }, point.choices.map(([value, words]) => h("button", { "data-key": `${name}-${value}`, "aria-pressed": String(value === point.chosen), onclick: () => set(value) }, words))),
-      point.key === "time_s" && point.kind === "column" ? h("p", {}, h("label", {}, "or constant rate, Hz ", h("input", { class: "short", type: "number", "aria-label": "sampling rate, Hz", "data-key": "answer-rate", onchange: (e) => this.reply({ kind: "rate" }, Number(e.target.value)) }))) : null);
+        : many ? h("select", { "aria-label": point.title, "data-key": name, onchange: (e) => set(e.target.value) },
+          h("option", { value: "" }, "choose …"),
+          point.choices.map(([value, words]) => h("option", { value, selected: value === point.chosen }, words)))
+          : h("div", { class: "choices" }, point.choices.map(([value, words]) =>
+            h("button", { "data-key": `${name}-${value}`, "aria-pressed": String(value === point.chosen), onclick: () => set(value) }, words))),
+      point.key === "time_s" && point.kind === "column" ? h("p", {}, h("label", {}, "or constant rate, Hz ",
+        h("input", { class: "short", type: "number", "aria-label": "sampling rate, Hz", "data-key": "answer-rate",
+          onchange: (e) => this.reply({ kind: "rate" }, Number(e.target.value)) }))) : null);
   }
 
   confirmation(point) {
@@ -131,7 +139,9 @@ export class ImportForm {
       for (const [key, { time_s, values }] of Object.entries(recording.columns)) {
         const place = h("div", { class: "plot" }), quantity = this.found.quantities.find((q) => q.key === key);
         this.plots.append(place);
-        const chart = new Chart(place, { curves: [curve("values", quantity?.words ?? key, "measured")], unit: `${quantity?.words.split(" ")[0] ?? key} (${quantity?.units[0] ?? ""})`, height: 130, legend: false });
+        const chart = new Chart(place, { height: 130, legend: false,
+          curves: [curve("values", quantity?.words ?? key, "measured")],
+          unit: `${quantity?.words.split(" ")[0] ?? key} (${quantity?.units[0] ?? ""})` });
         chart.edges = several ? pieces.filter((p) => p.keep).map((p) => at(p, p.from_s)) : [];
         chart.show({ time_s, values });
         chart.mark(pieces.filter((p) => !p.keep).map((p) => [at(p, p.from_s), at(p, p.to_s)]), []);
@@ -147,10 +157,12 @@ export class ImportForm {
     const known = this.found.quantities.find((q) => q.key === key), list = `units-${column.name}`;
     const other = key && !known ? [h("option", { value: key, selected: true }, key)] : [];
     return h("tr", { class: row ? "" : "unused" }, h("td", {}, column.name), h("td", {}, course(column.shape)), h("td", {}, column.first.join(", ")),
-      h("td", {}, h("select", { "data-key": `is-${column.name}`, "aria-label": `quantity of ${column.name}`, title: this.found.why[key] ?? "", onchange: (e) => this.change(column, { key: e.target.value }) },
+      h("td", {}, h("select", { "data-key": `is-${column.name}`, "aria-label": `quantity of ${column.name}`, title: this.found.why[key] ?? "",
+        onchange: (e) => this.change(column, { key: e.target.value }) },
         h("option", { value: "", selected: !row }, "not used"), other,
         this.found.quantities.map((q) => h("option", { value: q.key, selected: q.key === key }, q.words)))),
-      h("td", {}, row ? [h("input", { class: "short", list, value: row.unit === "?" ? "" : row.unit ?? column.unit ?? "", placeholder: "unit?", "data-key": `unit-${column.name}`, "aria-label": `unit of ${column.name}`,
+      h("td", {}, row ? [h("input", { class: "short", list, value: row.unit === "?" ? "" : row.unit ?? column.unit ?? "", placeholder: "unit?",
+        "data-key": `unit-${column.name}`, "aria-label": `unit of ${column.name}`,
         onchange: (e) => this.change(column, { unit: e.target.value }) }), h("datalist", { id: list }, (known?.units ?? []).map((u) => h("option", { value: u })))] : null),
       h("td", {}, row ? h("input", { type: "checkbox", checked: row.turned, "data-key": `turned-${column.name}`, "aria-label": `negate ${column.name}`, title: "negate",
         onchange: (e) => this.change(column, { turned: e.target.checked }) }) : null),
@@ -188,5 +200,6 @@ export class ImportForm {
 function course(shape) {
   if (!shape) return null;
   const points = shape.map((v, i) => (v === null ? null : `${(1 + 90 * i / Math.max(shape.length - 1, 1)).toFixed(1)},${(39 - 36 * v).toFixed(1)}`)).filter(Boolean).join(" ");
-  return s("svg", { class: "sketch", viewBox: "0 0 92 42", preserveAspectRatio: "none", "aria-hidden": "true" }, s("polyline", { points, fill: "none", stroke: "var(--measured)", "stroke-width": 1.4, "vector-effect": "non-scaling-stroke" }));
+  return s("svg", { class: "sketch", viewBox: "0 0 92 42", preserveAspectRatio: "none", "aria-hidden": "true" },
+    s("polyline", { points, fill: "none", stroke: "var(--measured)", "stroke-width": 1.4, "vector-effect": "non-scaling-stroke" }));
 }

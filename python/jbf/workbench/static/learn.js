@@ -25,7 +25,8 @@ export class LearnSection {
 
   update(before) {
     const { state } = this.page, node = this.page.model;
-    const now = JSON.stringify([state.current, state.compared, state.nodes.map((n) => [n.name, n.note]), state.law, state.rig, state.runs.length, Boolean(state.job), node?.records, Boolean(node?.trials)]);
+    const now = JSON.stringify([state.current, state.compared, state.nodes.map((n) => [n.name, n.note]),
+      state.law, state.rig, state.runs.length, Boolean(state.job), node?.records, Boolean(node?.trials)]);
     if (!before || now !== this.was) { this.was = now; this.show(); }
   }
 
@@ -35,7 +36,8 @@ export class LearnSection {
     const { page } = this, { state } = page, node = page.model, busy = Boolean(state.job) || !state.runs.length;
     this.lead();
     const law = h("select", { class: "law", "aria-label": "law", "data-key": "law", disabled: busy, onchange: (e) => page.do("law", { law: e.target.value }) },
-      state.laws.map(({ name, summary, refused }) => h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name}: ${refused ?? summary}`)));
+      state.laws.map(({ name, summary, refused }) =>
+        h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name}: ${refused ?? summary}`)));
     put(this.head, h("label", {}, "Law ", law),
       h("button", { "data-key": "fit-law", disabled: busy, onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} alone`),
       h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"));
@@ -61,7 +63,11 @@ export class LearnSection {
 
   async draw() {
     const { page } = this, node = page.model, ask = Symbol(); this.latest = ask;
-    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Press Show on an effect to draw it over the residual."); return; }
+    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) {
+      put(this.sketch); this.chart = null;
+      put(this.sketched, "Press Show on an effect to draw it over the residual.");
+      return;
+    }
     const asked = { run: page.run, model: node.id, effect: page.effect, from_s: page.span[0], to_s: page.span[1], pixels: 800 };
     let found;
     try { found = await get("signature", asked); } catch (error) {
@@ -69,7 +75,8 @@ export class LearnSection {
       return;
     }
     if (this.latest !== ask) return;
-    this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("contribution", "predicted contribution", "beside", { width: 1.8 })],
+    this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190,
+      curves: [curve("residual_n", "record minus model", "measured"), curve("contribution", "predicted contribution", "beside", { width: 1.8 })],
       zoomed: (from, to) => page.look({ span: [from, to] }) });
     this.chart.show(found);
     put(this.sketched, `${page.effect} on ${page.run}: fits the residual best at ${number(found.times_usual, 2)} times its typical strength. Select another run on the left.`);

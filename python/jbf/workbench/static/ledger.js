@@ -21,6 +21,7 @@ export function showLedger(page, place) {
     }
   });
   const foot = line.length * 40;
-  picture.append(s("line", { class: "floor", x1: x(noise), x2: x(noise), y1: 0, y2: foot }), s("text", { x: x(noise), y: foot + 16, "text-anchor": most > 4 ? "start" : "middle", class: "faint" }, `noise ${number(noise)} ${unit}`));
+  picture.append(s("line", { class: "floor", x1: x(noise), x2: x(noise), y1: 0, y2: foot }),
+    s("text", { x: x(noise), y: foot + 16, "text-anchor": most > 4 ? "start" : "middle", class: "faint" }, `noise ${number(noise)} ${unit}`));
   put(place, picture, h("p", { class: "faint" }, key("model", "fit"), key("out", "held out"), key("noise", "noise"), " · bars: times the noise, from zero"));
 }

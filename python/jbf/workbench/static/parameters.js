@@ -20,7 +20,8 @@ export class Parameters {
     if (!node) { put(this.table, h("p", { class: "faint" }, "None yet.")); put(this.foot); return; }
     const busy = Boolean(this.page.state.job);
     const rows = Object.entries(node.parameters).map(([name, p]) => this.row(name, p));
-    put(this.table, h("table", {}, h("thead", {}, h("tr", {}, ["parameter", "value", "unit", "95 % interval", "fixed", "lower bound", "upper bound"].map((w) => h("th", {}, w)))), h("tbody", {}, rows)));
+    const head = ["parameter", "value", "unit", "95 % interval", "fixed", "lower bound", "upper bound"];
+    put(this.table, h("table", {}, h("thead", {}, h("tr", {}, head.map((w) => h("th", {}, w)))), h("tbody", {}, rows)));
     put(this.foot, h("button", { class: "main", "data-key": "refit", disabled: busy, onclick: () => this.refit() }, "Fit with these settings"),
       h("button", { "data-key": "reset-parameters", onclick: () => this.show(true) }, "Reset"),
       h("span", { class: "faint" }, "A changed value is drawn at once and is the start of the fit; a fixed one is kept."));
@@ -28,7 +29,9 @@ export class Parameters {
 
   row(name, p) {
     const held = p.held || p.stderr === null || p.stderr === undefined, half = 1.96 * p.stderr;
-    const field = (what, value, set) => h("input", { class: "short", type: "number", step: "any", value: value ?? "", "aria-label": `${what} of ${name}`, "data-key": `${what}-${name}`, oninput: (e) => set(e.target.value === "" ? null : Number(e.target.value)) });
+    const field = (what, value, set) => h("input", { class: "short", type: "number", step: "any", value: value ?? "",
+      "aria-label": `${what} of ${name}`, "data-key": `${what}-${name}`,
+      oninput: (e) => set(e.target.value === "" ? null : Number(e.target.value)) });
     const end = (which) => (value) => { this.bounds[name] ??= [null, null]; this.bounds[name][which] = value; };
     const value = field("value", this.values[name] ?? Number(p.value.toPrecision(6)), (v) => { if (v === null) delete this.values[name]; else this.values[name] = v; this.follow(); });
     value.addEventListener("keydown", (e) => {
@@ -41,7 +44,8 @@ export class Parameters {
     });
     return h("tr", {}, h("td", { title: p.meaning }, name), h("td", {}, value), h("td", {}, p.unit ?? ""),
       h("td", {}, held ? `held${p.note ? `: ${p.note}` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`),
-      h("td", {}, h("input", { type: "checkbox", checked: this.fixed.has(name), "aria-label": `fix ${name}`, "data-key": `fix-${name}`, onchange: (e) => this.fixed[e.target.checked ? "add" : "delete"](name) })),
+      h("td", {}, h("input", { type: "checkbox", checked: this.fixed.has(name), "aria-label": `fix ${name}`, "data-key": `fix-${name}`,
+        onchange: (e) => this.fixed[e.target.checked ? "add" : "delete"](name) })),
       h("td", {}, field("lower", this.bounds[name]?.[0], end(0))), h("td", {}, field("upper", this.bounds[name]?.[1], end(1))));
   }
 
@@ -56,7 +60,9 @@ export class Parameters {
       return;
     }
     if (this.latest !== ask) return;
-    this.chart ??= new Chart(this.plot, { unit: page.units.force, height: 200, curves: [curve("friction_n", "measured", "measured"), curve("model_n", "model", "model"), curve("edited", "edited", "edited", { width: 1.8 })], zoomed: (from, to) => page.look({ span: [from, to] }) });
+    this.chart ??= new Chart(this.plot, { unit: page.units.force, height: 200,
+      curves: [curve("friction_n", "measured", "measured"), curve("model_n", "model", "model"), curve("edited", "edited", "edited", { width: 1.8 })],
+      zoomed: (from, to) => page.look({ span: [from, to] }) });
     this.chart.show(found);
     const own = node.runs.find((r) => r.name === page.run)?.rms;
     put(this.words, key("edited", `${page.run} with the edited values: RMS ${number(found.rms)} ${page.units.force}`), own === undefined ? "" : ` (the model: ${number(own)})`);
@@ -100,6 +106,7 @@ export function about(page, place) {
   const note = h("input", { class: "name", value: node.note ?? "", placeholder: "note", "aria-label": "note on the model", "data-key": "model-note", onchange: send });
   const busy = Boolean(page.state.job);
   put(place, h("div", { class: "row" }, h("label", {}, "Name ", name), h("label", {}, "Note ", note)),
-    h("div", { class: "row" }, h("span", {}, `Model: ${node.law}`), node.effects.map((effect) => h("button", { "data-key": `remove-${effect}`, disabled: busy, title: "fit without it", "aria-label": `remove ${effect}`,
+    h("div", { class: "row" }, h("span", {}, `Model: ${node.law}`), node.effects.map((effect) =>
+      h("button", { "data-key": `remove-${effect}`, disabled: busy, title: "fit without it", "aria-label": `remove ${effect}`,
       onclick: () => page.do("fit", { effects: node.effects.filter((e) => e !== effect), parent: node.parent ?? node.id }) }, `${effect} ×`))));
 }

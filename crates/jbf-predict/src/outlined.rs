@@ -67,10 +67,15 @@ macro_rules! occupied {
     ($occupied:expr, $method:ident, $($stage:ident)+) => { $($occupied.$stage)||+ };
 }
 
-/// Methods that call a stage with copies of their arguments.
+/// Properties of the effects, and methods that call a stage with copies of their arguments.
 macro_rules! outlined {
-    ($($m:ident [$($stage:ident)+] [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*)
-        ($($v:ident: $V:ty),*);)*) => {$(
+    ($(($p:ident $P:ty = $none:expr, $join:path))* $($m:ident [$($stage:ident)+] [$($ref:tt)+]
+        ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*) ($($v:ident: $V:ty),*);)*) => {$(
+        #[inline(always)]
+        fn $p(&self) -> $P {
+            self.effects.$p()
+        }
+    )*$(
         // Some methods change none of their arguments.
         #[allow(clippy::unused_unit)]
         #[inline(always)]
@@ -78,14 +83,11 @@ macro_rules! outlined {
             if occupied!(self.occupied, $m, $($stage)+) {
                 $(let $i = *$i;)*
                 let before = ($(*$o,)*);
-                ($(*$o,)*) = self.call(
-                    #[inline(always)]
-                    |effects, states| {
-                        let ($(mut $o,)*) = before;
-                        effects.$m(states, $(&$i,)* $(&mut $o,)* $($v),*);
-                        ($($o,)*)
-                    },
-                );
+                ($(*$o,)*) = self.call(#[inline(always)] |effects, states| {
+                    let ($(mut $o,)*) = before;
+                    effects.$m(states, $(&$i,)* $(&mut $o,)* $($v),*);
+                    ($($o,)*)
+                });
             }
         }
     )*};
@@ -96,19 +98,6 @@ impl<T: Real, I: InstructionSet> Effect<T> for Outlined<'_, T, I> {
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) {
         *self.states.borrow_mut() = self.effects.start(motion, rig);
-    }
-    fn longest_step_s(&self) -> f64 {
-        self.effects.longest_step_s()
-    }
-    fn has_memory(&self) -> bool {
-        self.effects.has_memory()
-    }
-    #[inline(always)]
-    fn has_drive(&self) -> bool {
-        self.occupied.drive
-    }
-    fn fastest_film(&self) -> f64 {
-        self.effects.fastest_film()
     }
     jbf_core::forward_stages!(outlined);
 }

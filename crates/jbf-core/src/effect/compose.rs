@@ -11,16 +11,23 @@ use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Passes the list of the methods of the stages to the macro `$set`, which defines them for a set.
+/// Passes the list of the methods of [`Effect`] to the macro `$set`, which defines them for a set.
 ///
-/// Each line has the method, the stages of the catalogue that it concerns, the kind of reference to
-/// the state, and the arguments: inputs by reference, quantities that the members change in turn,
-/// and values.
+/// The first lines have a property of a set: its type, its value for a set without effects, and the
+/// function that combines the values of two members. Each further line has a method of a stage, the
+/// stages of the catalogue that it concerns, the kind of reference to the state, and the arguments:
+/// inputs by reference, quantities that the members change in turn, and values. A set of fields
+/// passes their names in brackets, which precede the lines.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! forward_stages {
-    ($($set:ident)::+) => {
-        $($set)::+! {
+    ($set:ident $($fields:tt)?) => {
+        $set! {
+            $($fields)?
+            (longest_step_s f64 = f64::INFINITY, f64::min)
+            (has_memory bool = false, core::ops::BitOr::bitor)
+            (has_drive bool = false, core::ops::BitOr::bitor)
+            (fastest_film f64 = 1.0, core::ops::Mul::mul)
             drive [drive] [&mut] (rig: Rig<T>) (journal: JournalMotion<T>) (dt_s: T);
             resist [drive] [&mut] (resistance: Resistance<T>) () (dt_s: T);
             transmitted_n [drive] [&] (motion: Motion<T>, rig: Rig<T>) (force_n: Option<T>) ();
@@ -46,8 +53,13 @@ macro_rules! forward_stages {
 /// In this macro and in those below, `$m` is the method, `$ref` the kind of reference to the state,
 /// `$i` an input, `$o` a quantity that the members change in turn, and `$v` a value.
 macro_rules! pair {
-    ($($m:ident $stages:tt [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*)
-        ($($v:ident: $V:ty),*);)*) => {$(
+    ($(($p:ident $P:ty = $none:expr, $join:path))* $($m:ident $stages:tt [$($ref:tt)+]
+        ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*) ($($v:ident: $V:ty),*);)*) => {$(
+        #[inline(always)]
+        fn $p(&self) -> $P {
+            $join(self.0.$p(), self.1.$p())
+        }
+    )*$(
         #[inline(always)]
         fn $m(&self, s: $($ref)+ Self::State, $($i: &$I,)* $($o: &mut $O,)* $($v: $V),*) {
             self.0.$m($($ref)+ s.0, $($i,)* $($o,)* $($v),*);
@@ -58,8 +70,13 @@ macro_rules! pair {
 
 /// Methods of an optional set.
 macro_rules! option {
-    ($($m:ident $stages:tt [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*)
-        ($($v:ident: $V:ty),*);)*) => {$(
+    ($(($p:ident $P:ty = $none:expr, $join:path))* $($m:ident $stages:tt [$($ref:tt)+]
+        ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*) ($($v:ident: $V:ty),*);)*) => {$(
+        #[inline(always)]
+        fn $p(&self) -> $P {
+            self.as_ref().map_or($none, A::$p)
+        }
+    )*$(
         #[inline(always)]
         fn $m(&self, s: $($ref)+ Self::State, $($i: &$I,)* $($o: &mut $O,)* $($v: $V),*) {
             if let (Some(set), Some(s)) = (self, s) {
@@ -69,19 +86,29 @@ macro_rules! option {
     )*};
 }
 
-/// Methods of the catalogue, each of which calls the stages that it concerns.
+/// Methods of the catalogue: properties of all stages, and methods of the stages that they concern.
 ///
 /// With debug assertions each is a separate function, which reduces the compile time of tests to a
 /// fraction.
 macro_rules! stages {
-    ($($m:ident [$($stage:ident)+] [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*)
-        ($($v:ident: $V:ty),*);)*) => {$(
+    ($fields:tt $(($p:ident $P:ty = $none:expr, $join:path))* $($m:ident [$($stage:ident)+]
+        [$($ref:tt)+] ($($i:ident: $I:ty),*) ($($o:ident: $O:ty),*) ($($v:ident: $V:ty),*);)*) => {$(
+        #[inline(always)]
+        fn $p(&self) -> $P {
+            stages! { @ fold self $p $none, $join, $fields }
+        }
+    )*$(
         #[cfg_attr(debug_assertions, inline(never))]
         #[cfg_attr(not(debug_assertions), inline(always))]
         fn $m(&self, s: $($ref)+ Self::State, $($i: &$I,)* $($o: &mut $O,)* $($v: $V),*) {
             stages! { @ self s $m [$($ref)+] ($($i,)* $($o,)* $($v),*) $($stage)+ }
         }
     )*};
+    (@ fold $self:ident $p:ident $none:expr, $join:path, [$($field:ident)+]) => {{
+        let all = $none;
+        $(let all = $join(all, $self.$field.$p());)+
+        all
+    }};
     (@ $self:ident $s:ident $m:ident [$($ref:tt)+] ($($a:ident),* $(,)?) $stage:ident $($more:ident)*) => {
         $self.$stage.$m($($ref)+ $s.$stage, $($a),*);
         stages! { @ $self $s $m [$($ref)+] ($($a),*) $($more)* }
@@ -108,22 +135,6 @@ impl<T: Real, A: Effect<T>, B: Effect<T>> Effect<T> for (A, B) {
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
         (self.0.start(motion, rig), self.1.start(motion, rig))
     }
-    #[inline]
-    fn longest_step_s(&self) -> f64 {
-        self.0.longest_step_s().min(self.1.longest_step_s())
-    }
-    #[inline]
-    fn has_memory(&self) -> bool {
-        self.0.has_memory() || self.1.has_memory()
-    }
-    #[inline(always)]
-    fn has_drive(&self) -> bool {
-        self.0.has_drive() || self.1.has_drive()
-    }
-    #[inline]
-    fn fastest_film(&self) -> f64 {
-        self.0.fastest_film() * self.1.fastest_film()
-    }
     forward_stages!(pair);
 }
 
@@ -134,22 +145,6 @@ impl<T: Real, A: Effect<T>> Effect<T> for Option<A> {
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
         self.as_ref().map(|set| set.start(motion, rig))
-    }
-    #[inline]
-    fn longest_step_s(&self) -> f64 {
-        self.as_ref().map_or(f64::INFINITY, A::longest_step_s)
-    }
-    #[inline]
-    fn has_memory(&self) -> bool {
-        self.as_ref().is_some_and(A::has_memory)
-    }
-    #[inline(always)]
-    fn has_drive(&self) -> bool {
-        self.as_ref().is_some_and(A::has_drive)
-    }
-    #[inline]
-    fn fastest_film(&self) -> f64 {
-        self.as_ref().map_or(1.0, A::fastest_film)
     }
     forward_stages!(option);
 }

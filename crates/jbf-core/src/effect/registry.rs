@@ -157,23 +157,7 @@ macro_rules! signal_chain {
             fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> States<T> {
                 States { $($field: self.$field.start(motion, rig),)* }
             }
-            #[inline]
-            fn longest_step_s(&self) -> f64 {
-                f64::INFINITY $(.min(self.$field.longest_step_s()))*
-            }
-            #[inline]
-            fn has_memory(&self) -> bool {
-                false $(|| self.$field.has_memory())*
-            }
-            #[inline(always)]
-            fn has_drive(&self) -> bool {
-                self.drive.has_drive()
-            }
-            #[inline]
-            fn fastest_film(&self) -> f64 {
-                self.film.fastest_film()
-            }
-            forward_stages!(stages);
+            forward_stages!(stages [$($field)*]);
         }
     };
 }

@@ -275,7 +275,7 @@ firmware: $(TOOLS)
 	$(VENV)/bin/python examples/firmware/report.py
 
 clean:
-	rm -rf $(VENV) dist target examples/firmware/target python/jbf/_core*.so
+	rm -rf $(VENV) dist target examples/firmware/target examples/rtic/target python/jbf/_core*.so
 
 $(MADE):
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \

@@ -1,7 +1,8 @@
 """Cost of the loop on a Cortex-M4F: builds the programs, runs them in QEMU, prints tables.
 
 `make firmware`, or `python examples/firmware/report.py`. Fails where a step costs more than its
-budget, where a bit differs from a laptop's, where the loop could panic, or where it is too large.
+budget, where a bit differs from a laptop's, where the loop could panic, where it is too large, or
+where the RTIC application does not compile.
 """
 
 from __future__ import annotations
@@ -204,6 +205,18 @@ def c_library(tools: tuple[list[str], dict[str, str]]) -> list[str]:
     return [f"the C library could panic: {', '.join(found)}"] if found else []
 
 
+def rtic_application(tools: tuple[list[str], dict[str, str]]) -> None:
+    """Build the application in examples/rtic, which needs a board to run."""
+    cargo, environment = tools
+    subprocess.run(
+        [*cargo, "build", "--release", "--quiet"],
+        check=True,
+        cwd=HERE.parent / "rtic",
+        env=environment,
+    )
+    print("examples/rtic: compiled")
+
+
 def flight(tools: tuple[list[str], dict[str, str]]) -> list[str]:
     """Print the table of the programs that would be flashed; what is wrong with them."""
     print("| `control` with | flash, B | static RAM, B | stack, B | symbols of panics |")
@@ -235,6 +248,7 @@ def main() -> None:
     print()
     wrong += every_step(tools)
     wrong += c_library(tools)
+    rtic_application(tools)
     print(run(build("bits", "observed", tools)).strip())
     if wrong:
         print("\n".join(wrong), file=sys.stderr)

@@ -219,8 +219,8 @@ fn loops<T: Real>(watch: &mut impl Watch, kind: &str) {
     let mut velocity = T::ZERO;
     let name = format!("observer/velocity/{kind}");
     along(watch, &name, |from: &Motion<T>, to| {
-        velocity = observer.measure(velocity, to.angle_rad - from.angle_rad);
-        velocity = observer.carry(velocity, T::ONE);
+        velocity = observer.correct(velocity, to.angle_rad - from.angle_rad);
+        velocity = observer.predict(velocity, T::ONE);
         velocity
     });
     for exponent in [1.0, 0.5] {

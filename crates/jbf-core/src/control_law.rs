@@ -52,7 +52,7 @@ impl BaseLaw<f64> {
     /// Creates position control of a drive with the poles of Cohn (1998), -10 +- 10i.
     #[must_use]
     pub fn position(drive: &Drive) -> Self {
-        if drive.turns_like(&Drive::THESIS) {
+        if drive.has_same_dynamics(&Drive::THESIS) {
             return Self::THESIS_POSITION;
         }
         Self::with_polynomial(THESIS_POLYNOMIAL, drive)
@@ -62,7 +62,7 @@ impl BaseLaw<f64> {
     /// the reference speed.
     #[must_use]
     pub fn velocity(drive: &Drive) -> Self {
-        if drive.turns_like(&Drive::THESIS) {
+        if drive.has_same_dynamics(&Drive::THESIS) {
             return Self::THESIS_VELOCITY;
         }
         Self::Velocity {
@@ -73,7 +73,7 @@ impl BaseLaw<f64> {
 
     /// Creates position control with poles at `w (-1 +- i)/sqrt(2)`, where `w` is `natural_rad_s`.
     #[must_use]
-    pub fn placed(natural_rad_s: f64, drive: &Drive) -> Self {
+    pub fn pole_placement(natural_rad_s: f64, drive: &Drive) -> Self {
         let w = natural_rad_s;
         Self::with_polynomial([w * w, w * core::f64::consts::SQRT_2], drive)
     }
@@ -174,7 +174,7 @@ impl<T: Real> BaseLaw<T> {
 
     /// Returns the reference speed and acceleration of the target, rad/s and rad/s^2.
     #[inline]
-    pub fn wanted(&self, target: &Target<T>) -> [T; 2] {
+    pub fn reference(&self, target: &Target<T>) -> [T; 2] {
         match self {
             Self::Position { .. } => [target.rate, T::ZERO],
             Self::Velocity { .. } => [target.value, target.rate],
@@ -204,13 +204,13 @@ mod tests {
             (BaseLaw::THESIS_POSITION, Drive::THESIS, 10.0, 1e-3),
             (BaseLaw::position(&other), other, 10.0, 1e-12),
             (
-                BaseLaw::placed(30.0, &other),
+                BaseLaw::pole_placement(30.0, &other),
                 other,
                 30.0 / 2f64.sqrt(),
                 1e-12,
             ),
             (
-                BaseLaw::placed(30.0, &Drive::THESIS),
+                BaseLaw::pole_placement(30.0, &Drive::THESIS),
                 Drive::THESIS,
                 30.0 / 2f64.sqrt(),
                 1e-12,

@@ -64,16 +64,16 @@ fn angle_of_a_billion_counts_is_exact() {
 #[test]
 fn velocity_observer_equals_that_of_the_thesis() {
     for (a, b) in [(0.0, 0.0), (135.0, 457.0)] {
-        let ours = VelocityObserver::<f64>::fed_forward(15.0, a, b, DT_S).unwrap();
+        let ours = VelocityObserver::<f64>::with_feedforward(15.0, a, b, DT_S).unwrap();
         let (mut z, mut carried, mut before) = (0.0, 0.0, 0.0);
         for i in 0..5000_u32 {
             let t = f64::from(i) * DT_S;
             let (x, u) = ((0.7 * t).sin() * 3.0, (1.3 * t).cos());
             let theirs = 15.0 * x + z;
-            let v = ours.measure(carried, x - before);
+            let v = ours.correct(carried, x - before);
             assert!((v - theirs).abs() < 1e-9, "{t}");
             z += DT_S * (-(15.0 + a) * theirs + b * u);
-            carried = ours.carry(v, u);
+            carried = ours.predict(v, u);
             before = x;
         }
     }

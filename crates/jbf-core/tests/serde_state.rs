@@ -9,7 +9,7 @@ use common::bench::{
 };
 use jbf_core::compensator::learning::Learned as Film;
 use jbf_core::compensator::observed::Learned as Corrections;
-use jbf_core::compensator::{Compensator, Sense};
+use jbf_core::compensator::{Compensator, Input};
 use jbf_core::controller::Status;
 use jbf_core::encoder::{Encoder, State as Counter};
 use serde::de::DeserializeOwned;
@@ -36,18 +36,18 @@ fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
 fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut other: C::State) {
     for i in 0..5_000_u32 {
         let t = f64::from(i) * DT_S;
-        // `Sense` may get further fields, so it is filled in field by field.
-        let mut sense = Sense::default();
-        sense.angle_rad = t.cos();
-        sense.velocity_rad_s = -t.sin();
-        sense.error = 0.1 * (3.0 * t).sin();
-        sense.wanted_rad_s = -t.sin();
-        sense.wanted_rad_s2 = -t.cos();
-        sense.base_v = 0.5 * (2.0 * t).cos();
-        sense.may_learn = true;
+        // `Input` may get further fields, so it is filled in field by field.
+        let mut input = Input::default();
+        input.angle_rad = t.cos();
+        input.velocity_rad_s = -t.sin();
+        input.error = 0.1 * (3.0 * t).sin();
+        input.reference_rad_s = -t.sin();
+        input.reference_rad_s2 = -t.cos();
+        input.base_v = 0.5 * (2.0 * t).cos();
+        input.may_learn = true;
         let answers = [
-            compensator.step(&mut one, &sense),
-            compensator.step(&mut other, &sense),
+            compensator.step(&mut one, &input),
+            compensator.step(&mut other, &input),
         ];
         assert_eq!(answers[0], answers[1], "step {i}");
     }

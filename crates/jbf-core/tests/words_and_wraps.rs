@@ -6,7 +6,7 @@ mod common;
 use common::{bench, chain, chain_round, readings};
 use jbf_core::compensator::learning::Learned;
 use jbf_core::compensator::table::{Axis, Table};
-use jbf_core::compensator::{Compensator, Sense};
+use jbf_core::compensator::{Compensator, Input};
 use jbf_core::law::Law;
 use jbf_core::parameter::{Bound, Start};
 use jbf_core::run::read_force;
@@ -188,9 +188,9 @@ fn viscous_friction_is_proportional_to_the_learned_gamma() {
             ..Learned::THESIS
         };
         let loop_ = bench::learning::<f64>(bench::Control::Velocity).resumed(learned);
-        let mut sense = Sense::default();
-        sense.velocity_rad_s = velocity_rad_s;
-        loop_.step(&mut loop_.start(), &sense).sum_v
+        let mut input = Input::default();
+        input.velocity_rad_s = velocity_rad_s;
+        loop_.step(&mut loop_.start(), &input).sum_v
     };
     for velocity in [0.5, 4.0, -4.0] {
         let [one, two, three] = [33.0, 66.0, 99.0].map(|gamma| sent(gamma, velocity));

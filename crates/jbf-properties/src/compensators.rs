@@ -162,7 +162,7 @@ fn round<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) 
     .with_level_limit_v(between(bytes, 0.0, 10.0)?)
     .with_rest_limit_v(between(bytes, 0.0, 10.0)?)
     .with_breakaway(between(bytes, 0.0, 1.0)?)
-    .beside(&rig.law, between(bytes, 1.0, 100.0)?);
+    .with_control_law(&rig.law, between(bytes, 1.0, 100.0)?);
     let page = bytes.choose(law::CATALOGUE)?;
     let values = parameters::<T>(bytes, page.parameters)?;
     let effects = effects(bytes, page)?;

@@ -102,16 +102,16 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let law = match bytes.int_in_range(0..=2)? {
         0 => BaseLaw::position(&drive),
         1 => BaseLaw::velocity(&drive),
-        _ => BaseLaw::placed(between(bytes, 1.0, 100.0)?, &drive),
+        _ => BaseLaw::pole_placement(between(bytes, 1.0, 100.0)?, &drive),
     };
     let counts_per_rad = between(bytes, 1.0, 1e5)?;
     let top = drive.top_speed_rad_s();
     let encoder = Encoder::<T>::new(counts_per_rad, 16, top, dt_s);
     let gain = between(bytes, 0.1, 1e3)?;
     let observer = if bytes.arbitrary()? {
-        VelocityObserver::<T>::plain(gain, dt_s)
+        VelocityObserver::<T>::new(gain, dt_s)
     } else {
-        VelocityObserver::fed_forward(gain, drive.damping_1_s, drive.input_rad_s2_v, dt_s)
+        VelocityObserver::with_feedforward(gain, drive.damping_1_s, drive.input_rad_s2_v, dt_s)
     };
     let (Ok(encoder), Ok(observer)) = (encoder, observer) else {
         return Ok(());

@@ -11,7 +11,7 @@ use jbf_core::Real;
 fn velocity<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let (gain, damping) = (between(bytes, 1e-3, 1e5)?, between(bytes, 0.0, 1e4)?);
     let (input, dt_s) = (between(bytes, 0.0, 1e5)?, between(bytes, 1e-6, 1.0)?);
-    let Ok(observer) = VelocityObserver::<T>::fed_forward(gain, damping, input, dt_s) else {
+    let Ok(observer) = VelocityObserver::<T>::with_feedforward(gain, damping, input, dt_s) else {
         return Ok(());
     };
     let (most_rad, most_v) = (between(bytes, 1e-9, 10.0)?, between(bytes, 1e-3, 1e3)?);
@@ -22,8 +22,8 @@ fn velocity<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
         let moved = T::of(number(bytes, most_rad)?);
         let input_v = T::of(number(bytes, most_v)?);
         seen();
-        let measured = observer.measure(carried, moved);
-        carried = observer.carry(measured, input_v);
+        let measured = observer.correct(carried, moved);
+        carried = observer.predict(measured, input_v);
         bound += gain * most_rad;
         let told = || format!("{observer:?} {moved:?} {input_v:?}: {measured:?} {carried:?}");
         let within = |seen: T, bound: f64| seen.value().abs() <= bound * 1.001 + 1e-30;

@@ -56,7 +56,7 @@ pub fn around<T: Real, C: Compensator<T>>(
 
 /// Creates the velocity observer of Appendix E of Cohn (1998).
 pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, ParameterError> {
-    VelocityObserver::fed_forward(100.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, LOOP_STEP_S)
+    VelocityObserver::with_feedforward(100.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, LOOP_STEP_S)
 }
 
 /// Creates the Coulomb friction observer.

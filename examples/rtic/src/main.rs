@@ -57,10 +57,10 @@ mod app {
             .with_learning_1_s(2.0)
             .with_level_limit_v(0.5)
             .with_rest_limit_v(1.5)
-            .beside(&law, 30.0);
+            .with_control_law(&law, 30.0);
         Controller::new(
             Encoder::new(COUNTS_PER_RAD, 16, drive.top_speed_rad_s(), PERIOD_S)?,
-            VelocityObserver::plain(15.0, PERIOD_S)?,
+            VelocityObserver::new(15.0, PERIOD_S)?,
             law.cast(),
             Observed::new(model, &settings)?,
             Limits::new(LIMIT_V)
@@ -89,7 +89,7 @@ mod app {
     #[init]
     fn init(context: init::Context) -> (Shared, Local) {
         let device = context.device;
-        let mut rcc = device.RCC.freeze(Config::hsi().sysclk(100.MHz()));
+        let mut rcc = device.RCC.freeze(Config::hse(25.MHz()).sysclk(100.MHz()));
         let pins = device.GPIOA.split(&mut rcc);
         let encoder = Qei::new(device.TIM3, (pins.pa6, pins.pa7), &mut rcc);
         let (_, (channel, ..)) = device.TIM1.pwm_hz(20.kHz(), &mut rcc);

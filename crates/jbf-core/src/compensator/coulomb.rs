@@ -2,7 +2,7 @@
 //!
 //! Source: Friedland & Park (1992); Amin (1996); Cohn (1998), section 6.2.
 
-use super::{Answer, Compensator, Sense};
+use super::{Compensator, Input, Output};
 use crate::observer::coulomb::{CoulombObserver, State};
 use crate::plant::Drive;
 use crate::real::Real;
@@ -51,15 +51,15 @@ impl<T: Real> Compensator<T> for Coulomb<T> {
     }
 
     #[inline]
-    fn step(&self, state: &mut State<T>, sense: &Sense<T>) -> Answer<T> {
-        let v = sense.velocity_rad_s;
+    fn step(&self, state: &mut State<T>, input: &Input<T>) -> Output<T> {
+        let v = input.velocity_rad_s;
         let power = self.observer.power(v);
         let level_v = self.observer.level_v(state, &power);
-        if sense.may_learn {
-            let free = self.input_rad_s2_v * sense.base_v - self.damping_1_s * v;
+        if input.may_learn {
+            let free = self.input_rad_s2_v * input.base_v - self.damping_1_s * v;
             self.observer.learn(state, &power, v, free);
         }
         let friction_v = level_v * v.sign();
-        Answer::of(friction_v, [level_v, T::ZERO])
+        Output::of(friction_v, [level_v, T::ZERO])
     }
 }

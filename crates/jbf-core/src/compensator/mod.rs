@@ -23,7 +23,7 @@ use crate::real::Real;
 /// Inputs of a compensator at each step.
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
-pub struct Sense<T> {
+pub struct Input<T> {
     /// Angle since the start of the loop, rad.
     pub angle_rad: T,
     /// Speed estimate, rad/s.
@@ -31,9 +31,9 @@ pub struct Sense<T> {
     /// Control error: controlled quantity minus its reference, rad or rad/s.
     pub error: T,
     /// Reference speed, rad/s.
-    pub wanted_rad_s: T,
+    pub reference_rad_s: T,
     /// Reference acceleration, rad/s^2; zero where it is unknown.
-    pub wanted_rad_s2: T,
+    pub reference_rad_s2: T,
     /// Output of the control law before compensation, V.
     pub base_v: T,
     /// False while the output is saturated or the encoder is considered faulty; the compensator
@@ -45,7 +45,7 @@ pub struct Sense<T> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct Answer<T> {
+pub struct Output<T> {
     /// Voltage that is added to the output of the control law, V.
     pub sum_v: T,
     /// Estimated friction, with the sign of the motion, V.
@@ -58,10 +58,10 @@ pub struct Answer<T> {
     pub learned: [T; 2],
 }
 
-impl<T: Real> Answer<T> {
+impl<T: Real> Output<T> {
     /// Creates an output of zero.
     #[must_use]
-    pub fn nothing() -> Self {
+    pub fn zero() -> Self {
         Self {
             sum_v: T::ZERO,
             friction_v: T::ZERO,
@@ -80,15 +80,15 @@ impl<T: Real> Answer<T> {
             sum_v: friction_v,
             friction_v,
             learned,
-            ..Self::nothing()
+            ..Self::zero()
         }
     }
 
     /// Converts to another number type.
     #[must_use]
-    pub fn cast<U: Real>(&self) -> Answer<U> {
+    pub fn cast<U: Real>(&self) -> Output<U> {
         let cast = |value: T| U::of(value.value());
-        Answer {
+        Output {
             sum_v: cast(self.sum_v),
             friction_v: cast(self.friction_v),
             correction_v: cast(self.correction_v),
@@ -129,14 +129,14 @@ pub trait Compensator<T: Real> {
     ///
     /// The encoder is then considered faulty. The default is false.
     #[inline]
-    fn doubts(&self, state: &Self::State) -> bool {
+    fn infers_fault(&self, state: &Self::State) -> bool {
         let _ = state;
         false
     }
 
     /// Computes the output of the compensator for one step and updates its state.
     #[must_use]
-    fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
+    fn step(&self, state: &mut Self::State, input: &Input<T>) -> Output<T>;
 }
 
 /// No compensation: the control law acts alone.
@@ -149,7 +149,7 @@ impl<T: Real> Compensator<T> for NoCompensation {
     fn start(&self) {}
 
     #[inline]
-    fn step(&self, _state: &mut (), _sense: &Sense<T>) -> Answer<T> {
-        Answer::nothing()
+    fn step(&self, _state: &mut (), _sense: &Input<T>) -> Output<T> {
+        Output::zero()
     }
 }

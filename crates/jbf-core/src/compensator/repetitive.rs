@@ -12,7 +12,7 @@
 //! Source: Tung, Anwar & Tomizuka (1993); Tomizuka, Tsao & Chew (1989) for Q; Cohn (1998), section
 //! 2.4.1.
 
-use super::{Answer, Compensator, Sense};
+use super::{Compensator, Input, Output};
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
@@ -133,19 +133,19 @@ impl<T: Real, const N: usize> Compensator<T> for Repetitive<T, N> {
     }
 
     #[inline]
-    fn step(&self, state: &mut State<T, N>, sense: &Sense<T>) -> Answer<T> {
+    fn step(&self, state: &mut State<T, N>, input: &Input<T>) -> Output<T> {
         let n = N as u32;
         let at = state.step as f32 * self.cell_per_step;
         let cell = (at as u32).min(n - 1);
         if cell != state.cell {
             let error = state.error_sum * self.inverse_steps;
-            if sense.may_learn {
+            if input.may_learn {
                 self.teach(state, state.cell, error);
             }
             state.error_sum = T::ZERO;
             state.cell = cell;
         }
-        state.error_sum += sense.error;
+        state.error_sum += input.error;
         state.step += 1;
         if state.step >= self.steps_per_lap {
             state.step = 0;
@@ -157,6 +157,6 @@ impl<T: Real, const N: usize> Compensator<T> for Repetitive<T, N> {
             (Some(low), Some(high)) => low + (high - low) * share,
             _ => T::ZERO,
         };
-        Answer::of(sum_v, [sum_v, T::ZERO])
+        Output::of(sum_v, [sum_v, T::ZERO])
     }
 }

@@ -5,7 +5,7 @@
 //! Source: Armstrong-Helouvry (1991), break-away torque against position; Cohn (1998), section
 //! 2.4.1.
 
-use super::{Answer, Compensator, Sense};
+use super::{Compensator, Input, Output};
 use crate::error::{check, finite, positive, Error};
 use crate::real::Real;
 
@@ -81,13 +81,13 @@ impl<T: Real, const N: usize> Compensator<T> for Table<T, N> {
     fn start(&self) {}
 
     #[inline]
-    fn step(&self, _state: &mut (), sense: &Sense<T>) -> Answer<T> {
-        let v = sense.velocity_rad_s;
+    fn step(&self, _state: &mut (), input: &Input<T>) -> Output<T> {
+        let v = input.velocity_rad_s;
         let level_v = match self.axis {
             Axis::Speed => self.at(v),
-            Axis::Angle => self.at(sense.angle_rad),
+            Axis::Angle => self.at(input.angle_rad),
         };
         let friction_v = level_v * v.sign() + self.viscous_v_s * v;
-        Answer::of(friction_v, [level_v, T::ZERO])
+        Output::of(friction_v, [level_v, T::ZERO])
     }
 }

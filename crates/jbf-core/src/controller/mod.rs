@@ -30,42 +30,42 @@
 //!     .with_learning_1_s(2.0)
 //!     .with_level_limit_v(0.76)
 //!     .with_rest_limit_v(1.76)
-//!     .beside(&law, 30.0);
+//!     .with_control_law(&law, 30.0);
 //! let controller = Controller::new(
 //!     Encoder::new(2387.3, 16, drive.top_speed_rad_s(), DT_S)?,
-//!     VelocityObserver::plain(15.0, DT_S)?,
+//!     VelocityObserver::new(15.0, DT_S)?,
 //!     law.cast(),
 //!     Observed::new(model, &settings)?,
 //!     Limits::new(drive.limit_v).with_moving_v(1.9).with_patience_s(0.1),
 //!     DT_S,
 //! )?;
 //! let mut state = controller.start();
-//! // In the timer interrupt: counter in, voltage out, parts for the log.
+//! // In the timer interrupt: counter in, voltage out, signals for the log.
 //! let (counter, target) = (0_u32, Target { value: 1.0, rate: 0.0 });
-//! let parts = controller.step(&mut state, counter, &target);
-//! assert!(parts.output_v > 1.0 && parts.output_v <= 10.0);
-//! assert_eq!(parts.status, Status::OK);
+//! let signals = controller.step(&mut state, counter, &target);
+//! assert!(signals.output_v > 1.0 && signals.output_v <= 10.0);
+//! assert_eq!(signals.status, Status::OK);
 //! # Ok(())
 //! # }
 //! ```
 
+mod fault;
 mod limits;
-mod parts;
-mod sight;
+mod signals;
 mod status;
 
 pub use crate::control_law::BaseLaw;
 pub use limits::Limits;
-pub use parts::Parts;
+pub use signals::Signals;
 pub use status::Status;
 
-use crate::compensator::{Compensator, Sense};
+use crate::compensator::{Compensator, Input};
 use crate::encoder::{self, Encoder};
 use crate::error::{positive, Error};
 use crate::observer::VelocityObserver;
 use crate::real::Real;
 use crate::reference::Target;
-use sight::Sight;
+use fault::FaultDetector;
 
 /// Largest time limit, in steps; repeated doubling of the time must not overflow.
 const MOST_STEPS: f64 = 1e7;
@@ -78,7 +78,7 @@ pub struct Controller<T, C> {
     encoder: Encoder<T>,
     observer: VelocityObserver<T>,
     law: BaseLaw<T>,
-    sight: Sight<T>,
+    fault: FaultDetector<T>,
     limit_v: T,
 }
 
@@ -88,7 +88,7 @@ pub struct State<T, S> {
     /// State of the compensator.
     pub compensator: S,
     encoder: encoder::State,
-    sight: sight::State,
+    fault: fault::State,
     velocity_rad_s: T,
     target: Target<T>,
     applied_v: T,
@@ -116,7 +116,7 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
             encoder,
             observer,
             law,
-            sight: Sight {
+            fault: FaultDetector {
                 moving_v: T::of(limits.moving_v),
                 patience,
             },
@@ -133,7 +133,7 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         State {
             compensator: self.compensator.start(),
             encoder: encoder::State::default(),
-            sight: sight::State::default(),
+            fault: fault::State::default(),
             velocity_rad_s: T::ZERO,
             target: Target {
                 value: T::ZERO,
@@ -147,13 +147,13 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
     /// Computes one step of the loop: returns the output voltage and its components for a counter
     /// value and a target.
     #[inline]
-    #[must_use = "the voltage of this step is in the parts"]
+    #[must_use = "the voltage of this step is in the returned signals"]
     pub fn step(
         &self,
         state: &mut State<T, C::State>,
         counter: u32,
         target: &Target<T>,
-    ) -> Parts<T> {
+    ) -> Signals<T> {
         let mut status = Status::OK;
         if target.value.is_finite() && target.rate.is_finite() {
             state.target = *target;
@@ -162,13 +162,13 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
             status |= Status::NOT_FINITE;
         }
         let sample = self.encoder.step(&mut state.encoder, counter);
-        let doubted = self.compensator.doubts(&state.compensator);
+        let doubted = self.compensator.infers_fault(&state.compensator);
         let (mut status, blind) =
-            self.sight
-                .step(&mut state.sight, &sample, state.applied_v, doubted, status);
+            self.fault
+                .step(&mut state.fault, &sample, state.applied_v, doubted, status);
         let measured = self
             .observer
-            .measure(state.velocity_rad_s, sample.moved_rad);
+            .correct(state.velocity_rad_s, sample.moved_rad);
         let angle_rad = self.encoder.angle_rad(&state.encoder);
         let v = self.compensator.observe(
             &mut state.compensator,
@@ -179,20 +179,20 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         );
         let error = self.law.error(&state.target, angle_rad, v);
         let base_v = self.law.output_v(&state.target, angle_rad, v);
-        let [wanted_rad_s, wanted_rad_s2] = self.law.wanted(&state.target);
+        let [reference_rad_s, reference_rad_s2] = self.law.reference(&state.target);
         let answer = self.compensator.step(
             &mut state.compensator,
-            &Sense {
+            &Input {
                 angle_rad,
                 velocity_rad_s: v,
                 error,
-                wanted_rad_s,
-                wanted_rad_s2,
+                reference_rad_s,
+                reference_rad_s2,
                 base_v,
                 may_learn: !blind && state.limited == 0,
             },
         );
-        let alone = blind || state.limited >= self.sight.patience || !answer.sum_v.is_finite();
+        let alone = blind || state.limited >= self.fault.patience || !answer.sum_v.is_finite();
         let whole = base_v + if alone { T::ZERO } else { answer.sum_v };
         if alone {
             status |= Status::FALLBACK;
@@ -210,14 +210,14 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         } else {
             state.limited = 0;
         }
-        let carried = self.observer.carry(measured, base_v);
-        state.velocity_rad_s = if carried.is_finite() {
-            carried
+        let predicted = self.observer.predict(measured, base_v);
+        state.velocity_rad_s = if predicted.is_finite() {
+            predicted
         } else {
             T::ZERO
         };
         state.applied_v = output_v;
-        Parts {
+        Signals {
             angle_rad,
             velocity_rad_s: v,
             error,

@@ -30,15 +30,15 @@ impl<T: Real> VelocityObserver<T> {
     ///
     /// # Errors
     /// The gain must be positive, and `k dt` below 1.
-    pub fn plain(gain_1_s: f64, dt_s: f64) -> Result<Self, Error> {
-        Self::fed_forward(gain_1_s, 0.0, 0.0, dt_s)
+    pub fn new(gain_1_s: f64, dt_s: f64) -> Result<Self, Error> {
+        Self::with_feedforward(gain_1_s, 0.0, 0.0, dt_s)
     }
 
     /// Creates the observer with feedforward of the input of the plant, `v' = -a v + b u`.
     ///
     /// # Errors
     /// Gains must be positive (`a` and `b` may be zero), and `(a + k) dt` below 1.
-    pub fn fed_forward(
+    pub fn with_feedforward(
         gain_1_s: f64,
         damping_1_s: f64,
         input_rad_s2_v: f64,
@@ -71,7 +71,7 @@ impl<T: Real> VelocityObserver<T> {
     /// It is called before the control law.
     #[inline]
     #[must_use]
-    pub fn measure(&self, velocity_rad_s: T, moved_rad: T) -> T {
+    pub fn correct(&self, velocity_rad_s: T, moved_rad: T) -> T {
         velocity_rad_s + self.gain_1_s * moved_rad
     }
 
@@ -81,7 +81,7 @@ impl<T: Real> VelocityObserver<T> {
     /// It is called after the control law.
     #[inline]
     #[must_use]
-    pub fn carry(&self, velocity_rad_s: T, u_v: T) -> T {
+    pub fn predict(&self, velocity_rad_s: T, u_v: T) -> T {
         self.keep * velocity_rad_s + self.input * u_v
     }
 }

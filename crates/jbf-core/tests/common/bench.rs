@@ -8,7 +8,7 @@ use jbf_core::compensator::table::Axis;
 use jbf_core::compensator::{
     Compensator, Coulomb, LawModel, Learning, NoCompensation, Observed, Repetitive, Table,
 };
-use jbf_core::controller::{BaseLaw, Controller, Limits, Parts, State};
+use jbf_core::controller::{BaseLaw, Controller, Limits, Signals, State};
 use jbf_core::encoder::Encoder;
 use jbf_core::law::journal::Journal;
 use jbf_core::observer::{CoulombObserver, VelocityObserver};
@@ -46,11 +46,11 @@ pub fn controller<T: Real, C: Compensator<T>>(
     let encoder = Encoder::new(COUNTS_PER_RAD, 16, 68.0, DT_S).expect("encoder");
     let (observer, base) = match control {
         Control::Position => (
-            VelocityObserver::fed_forward(15.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, DT_S),
+            VelocityObserver::with_feedforward(15.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, DT_S),
             BaseLaw::thesis_position(),
         ),
         Control::Velocity => (
-            VelocityObserver::plain(15.0, DT_S),
+            VelocityObserver::new(15.0, DT_S),
             BaseLaw::thesis_velocity(),
         ),
     };
@@ -184,7 +184,7 @@ impl<T: Real, C: Compensator<T>> Bench<T, C> {
     }
 
     /// Advances the loop to a reference value and rate, and the shaft with the output of the loop.
-    pub fn step(&mut self, value: f64, rate: f64) -> Parts<T> {
+    pub fn step(&mut self, value: f64, rate: f64) -> Signals<T> {
         if !self.frozen {
             let counts = (self.shaft.angle_rad * COUNTS_PER_RAD).floor() as i64 + self.shift;
             self.counter = counts as u32 & 0xffff;

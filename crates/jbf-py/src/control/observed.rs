@@ -42,7 +42,7 @@ impl TunedSpec {
             .with_level_limit_v(self.level_limit_v)
             .with_rest_limit_v(self.rest_limit_v)
             .with_breakaway(self.breakaway)
-            .beside(&settings.law(), self.loop_rad_s)
+            .with_control_law(&settings.law(), self.loop_rad_s)
     }
 }
 

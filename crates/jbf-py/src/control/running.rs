@@ -2,7 +2,7 @@
 
 use super::settings::LoopSpec;
 use jbf_core::compensator::Compensator;
-use jbf_core::controller::{Controller, Parts, State};
+use jbf_core::controller::{Controller, Signals, State};
 use jbf_core::reference::Target;
 use jbf_core::Real;
 use pyo3::prelude::*;
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 /// Control loop in the course of a run, with any compensator and any number type.
 pub trait Stepping: Send {
     /// Computes one step of the loop, with input and output in double precision.
-    fn step(&mut self, counter: u32, target: Target<f64>) -> Parts<f64>;
+    fn step(&mut self, counter: u32, target: Target<f64>) -> Signals<f64>;
 }
 
 struct Running<T: Real, C: Compensator<T>> {
@@ -22,7 +22,7 @@ impl<T: Real, C: Compensator<T> + Send> Stepping for Running<T, C>
 where
     C::State: Send,
 {
-    fn step(&mut self, counter: u32, target: Target<f64>) -> Parts<f64> {
+    fn step(&mut self, counter: u32, target: Target<f64>) -> Signals<f64> {
         let target = Target {
             value: T::of(target.value),
             rate: T::of(target.rate),

@@ -66,9 +66,9 @@ impl LoopSpec {
         if self.position {
             let drive = self.drive.drive();
             let (a, b) = (drive.damping_1_s, drive.input_rad_s2_v);
-            VelocityObserver::fed_forward(velocity::THESIS_1_S, a, b, self.dt_s)
+            VelocityObserver::with_feedforward(velocity::THESIS_1_S, a, b, self.dt_s)
         } else {
-            VelocityObserver::plain(velocity::THESIS_1_S, self.dt_s)
+            VelocityObserver::new(velocity::THESIS_1_S, self.dt_s)
         }
     }
 }

@@ -77,8 +77,8 @@ fn observers() -> Result<(), ParameterError> {
         PERIOD,
         angle,
         |(from, to)| {
-            velocity = observer.measure(velocity, to - from);
-            velocity = black_box(observer.carry(velocity, 1.0));
+            velocity = observer.correct(velocity, to - from);
+            velocity = black_box(observer.predict(velocity, 1.0));
         },
     );
     for (name, exponent) in [

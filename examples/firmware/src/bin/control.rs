@@ -60,7 +60,7 @@ fn main() -> ! {
             step = 0;
             target.value = -target.value;
         }
-        let parts = controller.step(&mut state, board::counter(), &target);
-        board::amplify(parts.output_v);
+        let signals = controller.step(&mut state, board::counter(), &target);
+        board::amplify(signals.output_v);
     }
 }

@@ -21,7 +21,7 @@ mod settings;
 pub use rule::Rule;
 pub use settings::Settings;
 
-use super::{Answer, Compensator, Sense};
+use super::{Compensator, Input, Output};
 use crate::error::Error;
 use crate::law::journal::{Journal, State as Film};
 use crate::law::Law;
@@ -130,18 +130,18 @@ impl<T: Real> Compensator<T> for Learning<T> {
     }
 
     #[inline]
-    fn step(&self, state: &mut State<T>, sense: &Sense<T>) -> Answer<T> {
-        let v = sense.velocity_rad_s;
+    fn step(&self, state: &mut State<T>, input: &Input<T>) -> Output<T> {
+        let v = input.velocity_rad_s;
         let speed_m_s = v.abs() * self.radius_m;
         let mut law = self.law;
         law.k0 = state.learned.k0;
         let sliding = law.friction(&state.film, speed_m_s);
         let viscous = sliding.smooth * (state.learned.gamma * self.inverse_gamma);
         let size_v = (sliding.jump + viscous) * self.volts;
-        let sum_v = size_v * self.rule.direction(sense);
+        let sum_v = size_v * self.rule.direction(input);
         let learned = state.learned;
-        if sense.may_learn {
-            let lesson = self.rule.lesson(sense);
+        if input.may_learn {
+            let lesson = self.rule.lesson(input);
             let mut next = learned;
             if state.film.eps() > state.film.eps_tr() {
                 next.k0 += self.gain.k0 * lesson;
@@ -151,7 +151,7 @@ impl<T: Real> Compensator<T> for Learning<T> {
             state.learned = self.held(next);
         }
         law.advance_with(&Euler, &mut state.film, [speed_m_s; 3], T::ONE, self.dt_s);
-        Answer {
+        Output {
             sum_v,
             friction_v: size_v * v.sign(),
             correction_v: T::ZERO,

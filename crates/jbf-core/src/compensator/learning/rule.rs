@@ -2,7 +2,7 @@
 //! Cohn (1998).
 
 use super::Learned;
-use crate::compensator::Sense;
+use crate::compensator::Input;
 use crate::real::Real;
 
 /// Learning rule, determined by the type of control error.
@@ -57,8 +57,8 @@ impl<T: Real> Rule<T> {
     /// Change of a learned parameter for a gain of one, with its sign; for a speed error `-e
     /// sgn(v)` as in Cohn (1998).
     #[inline]
-    pub(super) fn lesson(&self, sense: &Sense<T>) -> T {
-        let (v, e) = (sense.velocity_rad_s, sense.error);
+    pub(super) fn lesson(&self, input: &Input<T>) -> T {
+        let (v, e) = (input.velocity_rad_s, input.error);
         match *self {
             Self::Velocity => -e * v.sign(),
             Self::Position { gate_rad, clip_rad } => {
@@ -76,10 +76,10 @@ impl<T: Real> Rule<T> {
 
     /// Sign of the friction in the output of the compensator.
     #[inline]
-    pub(super) fn direction(&self, sense: &Sense<T>) -> T {
+    pub(super) fn direction(&self, input: &Input<T>) -> T {
         match *self {
-            Self::Velocity => sense.velocity_rad_s.sign(),
-            Self::Position { .. } if sense.error > T::ZERO => -T::ONE,
+            Self::Velocity => input.velocity_rad_s.sign(),
+            Self::Position { .. } if input.error > T::ZERO => -T::ONE,
             Self::Position { .. } => T::ONE,
         }
     }
@@ -90,10 +90,10 @@ mod tests {
     use super::*;
 
     fn lesson(rule: Rule<f64>, velocity_rad_s: f64, error: f64) -> f64 {
-        rule.lesson(&Sense {
+        rule.lesson(&Input {
             velocity_rad_s,
             error,
-            ..Sense::default()
+            ..Input::default()
         })
     }
 

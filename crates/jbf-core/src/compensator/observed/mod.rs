@@ -40,7 +40,7 @@ mod settings;
 pub use settings::Settings;
 
 use super::model::FrictionModel;
-use super::{Answer, Compensator, Sense};
+use super::{Compensator, Input, Output};
 use crate::error::{check, Error};
 use crate::friction::Friction;
 use crate::real::Real;
@@ -294,23 +294,23 @@ impl<T: Real, M: FrictionModel<T>> Compensator<T> for Observed<T, M> {
     }
 
     #[inline]
-    fn doubts(&self, state: &Self::State) -> bool {
+    fn infers_fault(&self, state: &Self::State) -> bool {
         state.turned_rad.abs() > self.doubtful_rad
     }
 
     #[inline]
-    fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T> {
-        let v = sense.velocity_rad_s;
+    fn step(&self, state: &mut Self::State, input: &Input<T>) -> Output<T> {
+        let v = input.velocity_rad_s;
         let moving = v.abs() > self.slow_rad_s;
         let mut next = state.learned;
-        if sense.may_learn && moving {
+        if input.may_learn && moving {
             let share = self.learning * next.rest_v;
             next.level_v += share * v.sign();
             next.rest_v += -share;
         }
         state.learned = self.held(next);
         self.model
-            .advance(&mut state.model, v, sense.angle_rad, self.dt_s);
+            .advance(&mut state.model, v, input.angle_rad, self.dt_s);
         state.friction = self.model.friction(&state.model);
         // Evaluate the slope only where it may be steep, or was steep before.
         if state.steep_v_s_rad > T::ZERO
@@ -319,7 +319,7 @@ impl<T: Real, M: FrictionModel<T>> Compensator<T> for Observed<T, M> {
             state.steep_v_s_rad = self.steep(&state.model, v);
         }
         // For a slow shaft, use the direction of the wanted motion, not the noisy estimate.
-        let wish = sense.wanted_rad_s - self.approach_1_s * sense.error;
+        let wish = input.reference_rad_s - self.approach_1_s * input.error;
         let asked = (wish * self.inverse_slow).max(-T::ONE).min(T::ONE);
         let level_v = self.level_v(state);
         let signed_v = if moving && v * wish >= T::ZERO {
@@ -328,11 +328,11 @@ impl<T: Real, M: FrictionModel<T>> Compensator<T> for Observed<T, M> {
             level_v * asked * self.breakaway
         };
         let friction_v = signed_v + state.friction.smooth + state.learned.rest_v;
-        let forward_v = self.speed_v_s_rad * sense.wanted_rad_s
-            + self.acceleration_v_s2_rad * sense.wanted_rad_s2
-            - self.stiffer_v_rad * sense.error
-            - self.stiffer_v_s_rad * (v - sense.wanted_rad_s);
-        Answer {
+        let forward_v = self.speed_v_s_rad * input.reference_rad_s
+            + self.acceleration_v_s2_rad * input.reference_rad_s2
+            - self.stiffer_v_rad * input.error
+            - self.stiffer_v_s_rad * (v - input.reference_rad_s);
+        Output {
             sum_v: friction_v + forward_v,
             friction_v,
             correction_v: state.learned.level_v * v.sign() + state.learned.rest_v,

@@ -48,7 +48,7 @@ impl Settings {
     /// which the shaft is considered slow (rad/s), and the time step of the control loop (s).
     ///
     /// All limits are zero, so that no correction is made until limits are set. No control law is
-    /// assumed until [`Settings::beside`] sets one.
+    /// assumed until [`Settings::with_control_law`] sets one.
     #[must_use]
     pub const fn new(drive: &Drive, bandwidth_rad_s: f64, slow_rad_s: f64, dt_s: f64) -> Self {
         Self {
@@ -85,11 +85,14 @@ impl Settings {
     /// rate of approach to its target is a third of it. The frequency has no effect on a velocity
     /// loop.
     #[must_use]
-    pub fn beside(mut self, law: &BaseLaw<f64>, loop_rad_s: f64) -> Self {
+    pub fn with_control_law(mut self, law: &BaseLaw<f64>, loop_rad_s: f64) -> Self {
         self.law_forward_v_s_rad = law.forward_v_s_rad();
         if let BaseLaw::Position { .. } = law {
             let drive = Drive::new(self.damping_1_s, self.input_rad_s2_v);
-            let [wanted, has] = [BaseLaw::placed(loop_rad_s, &drive).gains(), law.gains()];
+            let [wanted, has] = [
+                BaseLaw::pole_placement(loop_rad_s, &drive).gains(),
+                law.gains(),
+            ];
             self.stiffer_v_rad = wanted[0] - has[0];
             self.stiffer_v_s_rad = wanted[1] - has[1];
             self.approach_1_s = loop_rad_s / 3.0;
@@ -133,7 +136,7 @@ mod tests {
     #[test]
     fn position_loop_gets_poles_of_the_requested_frequency() {
         let law = BaseLaw::position(&Drive::THESIS);
-        let s = PLAIN.beside(&law, 30.0);
+        let s = PLAIN.with_control_law(&law, 30.0);
         // Both feedbacks together have poles of natural frequency 30 rad/s.
         let [k1, k2] = law.gains();
         let (c0, c1) = (
@@ -146,7 +149,7 @@ mod tests {
 
     #[test]
     fn velocity_loop_gets_no_additional_stiffness() {
-        let s = PLAIN.beside(&BaseLaw::velocity(&Drive::THESIS), 30.0);
+        let s = PLAIN.with_control_law(&BaseLaw::velocity(&Drive::THESIS), 30.0);
         assert_eq!(s, PLAIN.with_law_forward_v_s_rad(0.295));
     }
 

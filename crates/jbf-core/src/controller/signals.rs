@@ -1,14 +1,14 @@
 //! Signals of one step of a control loop.
 
 use super::Status;
-use crate::compensator::Answer;
+use crate::compensator::Output;
 use crate::real::Real;
 
 /// Signals of one step of a control loop, for logging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct Parts<T> {
+pub struct Signals<T> {
     /// Angle since the start of the loop, rad.
     pub angle_rad: T,
     /// Speed estimate, rad/s.
@@ -18,19 +18,19 @@ pub struct Parts<T> {
     /// Output of the control law, V.
     pub base_v: T,
     /// Output of the compensator and its components.
-    pub compensation: Answer<T>,
+    pub compensation: Output<T>,
     /// Output voltage at the amplifier, V: finite and within the limit.
     pub output_v: T,
     /// Status flags of the loop.
     pub status: Status,
 }
 
-impl<T: Real> Parts<T> {
+impl<T: Real> Signals<T> {
     /// Converts to another number type.
     #[must_use]
-    pub fn cast<U: Real>(&self) -> Parts<U> {
+    pub fn cast<U: Real>(&self) -> Signals<U> {
         let cast = |value: T| U::of(value.value());
-        Parts {
+        Signals {
             angle_rad: cast(self.angle_rad),
             velocity_rad_s: cast(self.velocity_rad_s),
             error: cast(self.error),

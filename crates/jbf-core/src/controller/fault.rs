@@ -9,12 +9,12 @@ use crate::real::Real;
 
 /// Largest exponent of the duration of a fault that the compensator's observer infers.
 ///
-/// The duration is at most `2^LONGEST_DOUBT` times [`Sight::patience`].
+/// The duration is at most `2^LONGEST_DOUBT` times [`FaultDetector::patience`].
 const LONGEST_DOUBT: u32 = 7;
 
 /// Parameters of the detection of encoder faults.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sight<T> {
+pub(super) struct FaultDetector<T> {
     /// Voltage that certainly moves the shaft, V.
     pub(super) moving_v: T,
     /// Number of steps after which an unchanged counter is frozen, and after which a loop with a
@@ -35,10 +35,10 @@ pub(super) struct State {
     blind: u32,
 }
 
-impl<T: Real> Sight<T> {
+impl<T: Real> FaultDetector<T> {
     /// Checks a sample; returns the status flags, and true if the encoder is considered faulty.
     ///
-    /// The encoder is considered faulty during a fault and for [`Sight::patience`] steps after it.
+    /// The encoder is considered faulty during a fault and for [`FaultDetector::patience`] steps after it.
     #[inline]
     pub(super) fn step(
         &self,
@@ -98,7 +98,7 @@ impl<T: Real> Sight<T> {
 mod tests {
     use super::*;
 
-    const SIGHT: Sight<f64> = Sight {
+    const DETECTOR: FaultDetector<f64> = FaultDetector {
         moving_v: 1.0,
         patience: 3,
     };
@@ -115,7 +115,7 @@ mod tests {
     fn blind_for(state: &mut State, still: u32) -> u32 {
         (0..10_000)
             .take_while(|_| {
-                SIGHT
+                DETECTOR
                     .step(state, &sample(still, false), 0.0, false, Status::OK)
                     .1
             })
@@ -127,15 +127,15 @@ mod tests {
         let mut state = State::default();
         for step in 1..=2 {
             let (status, blind) =
-                SIGHT.step(&mut state, &sample(step, false), 1.0, false, Status::OK);
+                DETECTOR.step(&mut state, &sample(step, false), 1.0, false, Status::OK);
             assert!(status == Status::OK && !blind);
         }
-        let (status, blind) = SIGHT.step(&mut state, &sample(3, false), 1.0, false, Status::OK);
+        let (status, blind) = DETECTOR.step(&mut state, &sample(3, false), 1.0, false, Status::OK);
         assert!(status == Status::FROZEN && blind);
         // A voltage that does not move the shaft proves nothing; a count does.
-        let (status, _) = SIGHT.step(&mut state, &sample(4, false), 0.0, false, Status::OK);
+        let (status, _) = DETECTOR.step(&mut state, &sample(4, false), 0.0, false, Status::OK);
         assert!(status == Status::FROZEN);
-        let (status, blind) = SIGHT.step(&mut state, &sample(0, false), 0.0, false, Status::OK);
+        let (status, blind) = DETECTOR.step(&mut state, &sample(0, false), 0.0, false, Status::OK);
         assert!(status == Status::OK && blind);
         assert_eq!(blind_for(&mut state, 0), 1);
     }
@@ -144,7 +144,8 @@ mod tests {
     fn constant_counter_is_accepted_below_the_moving_voltage() {
         let mut state = State::default();
         for step in 1..100 {
-            let (status, _) = SIGHT.step(&mut state, &sample(step, false), 0.99, false, Status::OK);
+            let (status, _) =
+                DETECTOR.step(&mut state, &sample(step, false), 0.99, false, Status::OK);
             assert!(status == Status::OK);
         }
     }
@@ -153,7 +154,7 @@ mod tests {
     fn encoder_is_faulty_for_the_patience_after_a_jump_or_an_invalid_target() {
         for (jumped, target) in [(true, Status::OK), (false, Status::NOT_FINITE)] {
             let mut state = State::default();
-            let (status, blind) = SIGHT.step(&mut state, &sample(0, jumped), 0.0, false, target);
+            let (status, blind) = DETECTOR.step(&mut state, &sample(0, jumped), 0.0, false, target);
             assert!(blind && status.has(Status::JUMPED) == jumped && status.has(target) != jumped);
             assert_eq!(blind_for(&mut state, 0), 2);
         }
@@ -164,12 +165,12 @@ mod tests {
         let mut state = State::default();
         let mut lasted = [0; 3];
         for time in &mut lasted {
-            SIGHT.step(&mut state, &sample(9, false), 0.0, true, Status::OK);
+            DETECTOR.step(&mut state, &sample(9, false), 0.0, true, Status::OK);
             *time = blind_for(&mut state, 9);
         }
         assert_eq!(lasted, [3 - 1 + 2, 6 - 1 + 2, 12 - 1 + 2]);
-        SIGHT.step(&mut state, &sample(0, false), 0.0, false, Status::OK);
-        SIGHT.step(&mut state, &sample(9, false), 0.0, true, Status::OK);
+        DETECTOR.step(&mut state, &sample(0, false), 0.0, false, Status::OK);
+        DETECTOR.step(&mut state, &sample(9, false), 0.0, true, Status::OK);
         assert_eq!(blind_for(&mut state, 9), 3 - 1 + 2);
     }
 }

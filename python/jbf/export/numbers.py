@@ -78,8 +78,8 @@ class Numbers:
         law = find_law(model.law)
         if isinstance(law, UserLaw):
             raise InputError(
-                problem=f"the law {law.name} is written in Python and cannot be exported to Rust "
-                "or C",
+                problem=f"the law {law.name} is written in Python and cannot be exported to "
+                "Rust or C",
                 remedy="write it in Rust: cargo run --example user_law shows how",
             )
         effects = []
@@ -87,8 +87,8 @@ class Numbers:
             page = find_effect(name)
             if isinstance(page, UserEffect):
                 raise InputError(
-                    problem=f"the effect {name} is written in Python and cannot be exported to Rust "
-                    "or C",
+                    problem=f"the effect {name} is written in Python and cannot be exported to "
+                    "Rust or C",
                     remedy="write it in Rust: cargo run --example user_effect shows how",
                 )
             group = _group(page, model, f"{name}.")

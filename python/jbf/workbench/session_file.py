@@ -19,7 +19,7 @@ _RENAMED = {
     "power": {"found": "detectable", "alone": "distinguishable", "like": "confounded_with"},
     "directions": {"way": "direction"},
 }
-"""Current keys of the rows of two tables, by key of a file from before version 0.1.0."""
+"""Current keys of the rows of two tables, by their key in older session files."""
 
 
 def content_of(session: Session) -> dict[str, Any]:
@@ -105,7 +105,7 @@ def restore(session: Session, content: dict[str, Any], path: Path) -> None:
     try:
         bench = Bench.read(session.folder, str(content["rig"]), list(map(str, content["runs"])))
         current_names = [run.name for run in bench.runs]
-        # Files saved before version 0.1.0 have no names.
+        # Older session files have no names.
         saved_names = map(str, content.get("run_names", current_names))
         names = dict(zip(saved_names, current_names, strict=True))
         for name, span in content["trims"].items():

@@ -149,7 +149,7 @@ impl<T: Real> Compensator<T> for NoCompensation {
     fn start(&self) {}
 
     #[inline]
-    fn step(&self, _state: &mut (), _sense: &Input<T>) -> Output<T> {
+    fn step(&self, _state: &mut (), _input: &Input<T>) -> Output<T> {
         Output::zero()
     }
 }

@@ -39,6 +39,8 @@ SCRIPTS = {
 NOT_ANEW = {
     "images/detection.png": "`benches/hidden_effects --seeds 1 --first-seed 701`, a day of "
     "campaigns, commit 784478f",
+    "images/diagnosis_cost.png": "`benches/diagnosis_cost.py`, two minutes on an idle machine, "
+    "commit d1e0daed",
 }
 PAGE = DOCS / "reference" / "figures.md"
 HEAD = """# Figures: command, machine, commit

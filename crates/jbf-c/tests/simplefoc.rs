@@ -5,14 +5,21 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Static library of this crate, which cargo builds together with the tests.
+///
+/// Its name contains a hash, and earlier builds may remain: the newest is that of the tests.
 fn static_library() -> PathBuf {
     let test = std::env::current_exe().expect("the path of the test");
     let folder = test.parent().expect("the folder of the tests");
-    [folder, folder.parent().expect("the folder of the profile")]
-        .iter()
-        .map(|f| f.join("libjbf_c.a"))
-        .find(|f| f.exists())
-        .expect("libjbf_c.a next to the tests")
+    let built = |path: &PathBuf| path.metadata().and_then(|m| m.modified()).ok();
+    std::fs::read_dir(folder)
+        .expect("the files next to the test")
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| {
+            let name = path.file_name().map(|name| name.to_string_lossy());
+            name.is_some_and(|name| name.starts_with("libjbf_c") && name.ends_with(".a"))
+        })
+        .max_by_key(built)
+        .expect("libjbf_c next to the test")
 }
 
 #[test]

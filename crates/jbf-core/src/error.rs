@@ -1,6 +1,5 @@
 //! Error type of all constructors: the parameter, its value and the violated rule.
 
-use core::cmp::Ordering;
 use core::fmt;
 
 /// Reason why a constructor failed.
@@ -230,20 +229,25 @@ pub(crate) fn given<T: Copy>(values: &[T], i: usize, name: &'static str) -> Resu
 }
 
 /// Checks that a list has one value for each of the parameters.
+///
+/// Two comparisons instead of an ordering let the compiler omit the bounds checks of the caller.
+#[inline(always)]
 pub(crate) fn exactly(name: &'static str, given: usize, needed: usize) -> Result<(), Error> {
-    match given.cmp(&needed) {
-        Ordering::Less => Err(Error::TooFew {
+    if given < needed {
+        return Err(Error::TooFew {
             name,
             given,
             needed,
-        }),
-        Ordering::Equal => Ok(()),
-        Ordering::Greater => Err(Error::TooMany {
-            name,
-            given,
-            needed,
-        }),
+        });
     }
+    if given > needed {
+        return Err(Error::TooMany {
+            name,
+            given,
+            needed,
+        });
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -202,6 +202,9 @@ def test_edited_parameter_is_drawn_fixed_fitted_and_compared(
     page.wait_for_selector("[data-key=cancel]", state="detached")
     assert page.input_value("[data-key=value-F_c]") == "9"
     assert float(page.input_value("[data-key=value-F_v]")) <= 30.0
+    # The next fit of this model keeps what was fixed and bounded.
+    assert page.is_checked("[data-key=fix-F_c]")
+    assert page.input_value("[data-key=upper-F_v]") == "30"
     # Both models in one table and in one plot; name, undo and redo.
     page.fill("[data-key=model-name]", "nine newtons")
     page.keyboard.press("Enter")

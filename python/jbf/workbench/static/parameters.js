@@ -11,12 +11,17 @@ export class Parameters {
     this.reset();
   }
 
-  reset() { this.values = {}; this.fixed = new Set(); this.bounds = {}; }
+  // Start with the fixed values and bounds of the fit of a model.
+  reset(node) {
+    const { fixed = {}, bounds = {} } = node?.settings ?? {};
+    this.values = {}; this.fixed = new Set(Object.keys(fixed));
+    this.bounds = Object.fromEntries(Object.entries(bounds).map(([name, ends]) => [name, [...ends]]));
+  }
 
   // `again`: the model is another one.
   show(again) {
     const node = this.page.model;
-    if (again) { this.reset(); this.chart = null; put(this.plot); put(this.words, ""); }
+    if (again) { this.reset(node); this.chart = null; put(this.plot); put(this.words, ""); }
     if (!node) { put(this.table, h("p", { class: "faint" }, "None yet.")); put(this.foot); return; }
     const busy = Boolean(this.page.state.job);
     const rows = Object.entries(node.parameters).map(([name, p]) => this.row(name, p));

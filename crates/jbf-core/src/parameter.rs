@@ -47,6 +47,8 @@ pub enum Start {
     Damping,
     /// Small fraction of the friction in motion.
     Drag,
+    /// Mass that explains the force during acceleration.
+    Mass,
     /// Pitches (spatial periods) with which the force varies along the travel.
     Pitch,
     /// Pitches (spatial periods) with which the force in the direction of motion varies.
@@ -93,6 +95,7 @@ impl Start {
             Start::SlipDistance => "slip_distance",
             Start::Damping => "damping",
             Start::Drag => "drag",
+            Start::Mass => "mass",
             Start::Pitch => "pitch",
             Start::RipplePitch => "ripple_pitch",
             Start::RunTime => "run_time",

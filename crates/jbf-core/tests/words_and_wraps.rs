@@ -27,6 +27,7 @@ fn start_rules_and_bounds_have_their_names_in_files() {
         (Start::Stiffness, "stiffness"),
         (Start::Damping, "damping"),
         (Start::Drag, "drag"),
+        (Start::Mass, "mass"),
         (Start::Pitch, "pitch"),
         (Start::RipplePitch, "ripple_pitch"),
         (Start::RunTime, "run_time"),

@@ -96,18 +96,6 @@ def _differ_by_less_than_quantisation(
     return bool(samples.rms(differences) < campaign.steps_rms(simpler.rms))
 
 
-def explains_less(candidates: Candidates, richer: Solution, other: Solution) -> bool:
-    """Whether, with an uncertain motion, a model has no fewer parameters and a larger RMS.
-
-    False unless the errors of the motion are a large part of the residual. Their covariance is then
-    estimated with one of the models, so that a larger likelihood alone does not decide.
-    """
-    if not candidates.campaign.motion_uncertain or richer.free < other.free:
-        return False
-    samples = common_samples(richer.samples, other.samples)
-    return bool(samples.rms(richer.residuals) > samples.rms(other.residuals))
-
-
 def evidence_on_common_samples(
     candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
 ) -> float:
@@ -177,8 +165,7 @@ def swap_costs(
         costs[name] = cost(candidates.rank(sets[name], near))
         if costs[name] < policy.search.rank_margin:
             solution = candidates.converge(sets[name], near)
-            larger = solution.rms > policy.selection.max_rms_ratio * current.rms
-            if larger or explains_less(candidates, solution, current):
+            if solution.rms > policy.selection.max_rms_ratio * current.rms:
                 # For a wrong model, the residual with the highest likelihood may have a larger RMS.
                 costs[name] = float("inf")
                 continue

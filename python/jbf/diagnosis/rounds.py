@@ -20,7 +20,7 @@ from jbf.diagnosis.selection import (
     still_needed,
     try_candidates,
 )
-from jbf.diagnosis.terms import best_term_update
+from jbf.diagnosis.terms import best_term_update, re_estimated_motion
 from jbf.diagnosis.terms.shifts import DELAY
 from jbf.errors import Unfinished
 from jbf.estimation.held_out import errors_by_run
@@ -146,6 +146,10 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             least = _evidence_of_leader(candidates, present, trial_round)
             update = best_term_update(candidates, present, least) if may_update else None
             if update is None and len(present) < policy.selection.max_effects:
+                # The errors of the motion, estimated without the effect, contain its force.
+                again = re_estimated_motion(candidates, (*present, trial_round.leader))
+                if again is not None:
+                    candidates, visited = candidates.of(again), {frozenset(present)}
                 grown = _grown(candidates, present, trial_round)
         ended = frozenset(grown) in visited
         if update is None and ended and follow == "promising" and may_update:

@@ -20,7 +20,6 @@ from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
 from jbf.diagnosis.evidence import (
     evidence,
     evidence_on_common_samples,
-    explains_less,
     full_gain,
     price_of,
     swap_costs,
@@ -100,7 +99,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
     ranked = _rank(candidates, present, base, follow)
-    leader, best, trials, leading = None, 0.0, [], base
+    leader, best, trials = None, 0.0, []
     unconfirmed: set[str] = set()
     bare = base.rms
     least = min((r.solution.rms for r in ranked if r.evidence > 0), default=bare)
@@ -127,7 +126,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             elif confirmation.confirms(gain, bare**2 - rms**2, policy):
                 if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)
-                leader, best, leading = name, gain, candidate.solution
+                leader, best = name, gain
                 outcome, reason = "added", f"largest evidence; {confirmation.describe(unit)}"
             else:
                 outcome = "rejected"
@@ -138,8 +137,6 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome, reason = "rejected", f"leaves an RMS of {rms:.3g} {unit}, more than {leader}"
         elif gain > max(0.0, best - policy.selection.tie):
             outcome, reason = "ties", f"fits as well as {leader}"
-        elif gain > 0 and explains_less(candidates, leading, candidate.solution):
-            outcome, reason = "ties", f"leaves less than {leader}, with no more parameters"
         elif gain > 0:
             outcome = "rejected"
             reason = f"evidence is {best - gain:.0f} below that of {leader}"

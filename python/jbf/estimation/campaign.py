@@ -91,6 +91,8 @@ class Campaign:
         Findings from fitted models, in addition to those of the runs.
     work
         Remaining budget for fits, shared by all campaigns derived from this one.
+    first
+        The campaign as it was prepared, from which this one is derived; None for that one.
     """
 
     rig: Rig
@@ -99,6 +101,7 @@ class Campaign:
     most_noise_n: float | None = None
     more_findings: tuple[Finding, ...] = ()
     work: Work = field(default_factory=Work)
+    first: Campaign | None = None
 
     @classmethod
     def prepare(
@@ -145,7 +148,8 @@ class Campaign:
         samples = Samples.of(prepared, settings)
         work = Work.of(sum(len(p.friction) for p in prepared), time_limit)
         noise = noise_upper_bound(prepared, samples)
-        return cls(rig, prepared, samples, noise, tuple(without_motion), work)
+        first = cls(rig, prepared, samples, noise, tuple(without_motion), work)
+        return replace(first, first=first)
 
     @property
     def settings(self) -> Settings:

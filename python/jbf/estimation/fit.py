@@ -239,6 +239,30 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     )
 
 
+def _from_all_starts(
+    problem: Problem, solution: Solution, given: Mapping[str, float]
+) -> tuple[Problem, Solution]:
+    """Search from all starting values with the errors of the motion; return the likelier fit.
+
+    Where these errors are large, ordinary least squares may end near another maximum.
+    """
+    motion = solution.samples.motion
+    if motion is None:
+        return problem, solution
+    samples = replace(problem.campaign.samples, motion=replace(motion, by_delay=None))
+    campaign = replace(problem.campaign, samples=samples)
+    whitened = Problem(
+        campaign, problem.law, problem.clock, problem.effects, problem.fixed, problem.bounds
+    )
+    other = not_above_nested(whitened, minimum(whitened, [given]))
+    if other.cost >= samples.cost(solution.residuals, other.noise):
+        return problem, solution
+    near = problem.solution(other.values, problem.samples_at(other.values), WHITE)
+    again = with_motion_errors(problem, near)
+    likelier = log_likelihood(again[1]) > log_likelihood(solution)
+    return again if likelier else (problem, solution)
+
+
 @one_blas_thread
 def fit(
     rig: Rig,
@@ -333,6 +357,7 @@ def fit(
     try:
         solution = not_above_nested(problem, minimum(problem, [given]))
         problem, solution = with_motion_errors(problem, solution)
+        problem, solution = _from_all_starts(problem, solution, given)
         solution = best_weighting(problem, solution)
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.lift()

@@ -10,10 +10,14 @@ The maximum over all pitches increases the gain by chance. In noise, the highest
 resolvable pitches has a gain of `2 log(pitches)` in twice the log likelihood. There are fewer
 pitches than samples, and the threshold contains a penalty of `3 log(samples)` for amplitude, phase
 and pitch.
+
+The motion is that of the campaign as it was prepared. A motion that was estimated again with a
+model without the periodic force may be so rough that it explains this force.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -46,7 +50,7 @@ It only starts a search.
 Knots = list[tuple[float, Array]]
 
 _pitches_of: WeakKeyDictionary[Campaign, dict[bool, tuple[float, ...]]] = WeakKeyDictionary()
-_forces_of: WeakKeyDictionary[Campaign, tuple[Array, Array, Array]] = WeakKeyDictionary()
+_regressions: WeakKeyDictionary[Campaign, _Regression] = WeakKeyDictionary()
 
 
 def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
@@ -57,6 +61,7 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
     along
         Whether the force in the direction of motion is used instead of the force itself.
     """
+    campaign = campaign.first or campaign
     by_direction = _pitches_of.setdefault(campaign, {})
     if along not in by_direction:
         by_direction[along] = _pitches(campaign, along)
@@ -90,7 +95,8 @@ def known_pitches(rig: Rig) -> tuple[float, ...]:
 
 def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
     """Pitches, m, of the highest lines in the spatial spectrum of the remaining force."""
-    place, rest, speed = _remaining_force(campaign)
+    regression = _regression(campaign)
+    place, rest, speed = regression.place, regression.remaining, regression.speed
     if len(place) < PADDING * KNOTS:
         return ()
     span = float(np.ptp(place))
@@ -128,23 +134,48 @@ def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
     return np.asarray(pair @ solution)
 
 
-def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
-    """Position, m, remaining force, N, and speed, m/s, of the moving samples.
+def mass(campaign: Campaign) -> float | None:
+    """Mass that the dependence of the force on the acceleration suggests, kg.
 
-    The remaining force is the part that speed, acceleration and angle do not explain.
+    None if the runs contain too few samples, or if the dependence has the wrong sign.
     """
-    if campaign not in _forces_of:
-        _forces_of[campaign] = _compute_remaining_force(campaign)
-    return _forces_of[campaign]
+    found = _regression(campaign.first or campaign).mass_kg
+    return found if found > 0.0 else None
 
 
-def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
-    """Compute the result of `_remaining_force` by least squares, run by run in triangular form."""
+@dataclass(frozen=True)
+class _Regression:
+    """Regression of the force of a campaign on speed, acceleration and angle.
+
+    Attributes
+    ----------
+    place, remaining, speed
+        Position, m, force that the regression does not explain, N, and speed, m/s, of the moving
+        samples.
+    mass_kg
+        Coefficient of the acceleration.
+    """
+
+    place: Array
+    remaining: Array
+    speed: Array
+    mass_kg: float = 0.0
+
+
+def _regression(campaign: Campaign) -> _Regression:
+    """Return the regression of the force of a campaign, computed once."""
+    if campaign not in _regressions:
+        _regressions[campaign] = _regress(campaign)
+    return _regressions[campaign]
+
+
+def _regress(campaign: Campaign) -> _Regression:
+    """Compute the regression by least squares, run by run in triangular form."""
     pairs = campaign.moving
     place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * campaign.arm_m
     speed = np.concatenate([p.motion.velocity[m] for p, m in pairs])
     if len(speed) < PADDING * KNOTS:
-        return place, np.concatenate([p.friction[m] for p, m in pairs]), speed
+        return _Regression(place, np.concatenate([p.friction[m] for p, m in pairs]), speed)
     knots = _knots(speed)
     # Each run has its own load and temperature, so the means in each direction are removed for each
     # run (Frisch & Waugh 1933). A triangular factor replaces the rows of each run.
@@ -164,7 +195,7 @@ def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
         regressors = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
         remaining = p.friction[m] - (regressors / scale) @ solution
         rest.append(_centred_by_direction(remaining[:, None], p.motion.velocity[m])[:, 0])
-    return place, np.concatenate(rest), speed
+    return _Regression(place, np.concatenate(rest), speed, float(solution[0] / scale[0]))
 
 
 def _regressors(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:

@@ -150,7 +150,10 @@ class Samples:
         return float(np.sqrt(total / max(self.count, 1)))
 
     def square(self, residuals: Sequence[Array]) -> float:
-        """Sum of squares of weighted residuals, N^2."""
+        """Sum of squares of weighted residuals, N^2; whitened if the motion has errors."""
+        if self.motion is not None:
+            residuals = self.motion.innovations(residuals, self.weight)
+            return sum(float(np.sum(r**2)) for r in residuals)
         return sum(float(np.sum((r * w) ** 2)) for r, w in zip(residuals, self.weight, strict=True))
 
     # ---- likelihood -------------------------------------------------------------------------

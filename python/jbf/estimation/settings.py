@@ -122,7 +122,7 @@ class ConditionSettings:
         "such an effect would smooth these errors",
     )
     min_pitch_periods: float = documented(
-        4.0,
+        2.0,
         "minimum number of periods within the travel for a wave to have a pitch",
         "a longer wave is a variation along the stroke, which is another effect",
     )

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import known_pitches, longest_pitch, pitches
+from jbf.estimation.pitches import known_pitches, longest_pitch, mass, pitches
 from jbf.estimation.prepared import Prepared
 from jbf.models.catalogue import Parameter
 from jbf.records.findings.slow_temperature import recorded_temperature
@@ -197,6 +197,7 @@ def _largest_n(campaign: Campaign) -> float:
 
 
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
+    "mass": lambda c: () if (kg := mass(c)) is None else (kg,),
     "pitch": lambda c: (*pitches(c, along=False), *known_pitches(c.rig)),
     "ripple_pitch": lambda c: (*pitches(c, along=True), *known_pitches(c.rig)),
     "run_time": _run_time,

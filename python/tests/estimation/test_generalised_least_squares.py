@@ -7,6 +7,7 @@ import numpy.typing as npt
 import pytest
 from jbf import Rig, Run, fit
 from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.samples import Samples
 from jbf.records.motion.estimated_motion import estimate_motion
 
 STEP_S = 0.004
@@ -92,6 +93,9 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
     assert np.std(white) == pytest.approx(NOISE, rel=0.05)
     assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.06
     assert np.std(residual) > 1.1 * NOISE
+    # Starting values are compared by the squares that the fit minimises.
+    samples = Samples(("a",), (0.01,), (weight > 0.0,), (weight,), motion=model)
+    assert samples.square([residual]) == pytest.approx(float(white @ white))
 
 
 @pytest.mark.parametrize("scale", [0.3, 1.0, 3.0])

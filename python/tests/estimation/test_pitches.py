@@ -89,8 +89,8 @@ def test_pitches_of_waves_are_listed_in_the_order_of_their_amplitudes() -> None:
     assert found == pytest.approx([p for p, _ in some], rel=0.01)
 
 
-@pytest.mark.parametrize(("periods", "found"), [(3.7, False), (4.3, True)])
-def test_pitch_is_estimated_only_if_the_path_contains_four_periods(
+@pytest.mark.parametrize(("periods", "found"), [(1.7, False), (2.3, True)])
+def test_pitch_is_estimated_only_if_the_path_contains_two_periods(
     periods: float, found: bool
 ) -> None:
     lines = [0.2 / p for p in pitches(shuttle([(0.2 / periods, 1.0)]), along=False)]
@@ -109,8 +109,8 @@ def test_no_pitch_is_estimated_from_a_short_record_or_a_short_path() -> None:
     v = np.full(len(t), 0.01)
     run = Run.from_arrays(t, v, np.full(len(t), 5.0), position_m=0.01 * t)
     assert pitches(Campaign.prepare(Rig(), [run]), along=False) == ()
-    # A path of fifteen samples does not contain four periods of the shortest pitch.
-    assert pitches(shuttle([(3e-3, 1.0)], path_m=7e-3, periods=20), along=False) == ()
+    # A path of seven samples does not contain two periods of the shortest pitch.
+    assert pitches(shuttle([(2e-3, 1.0)], path_m=3.5e-3, periods=20), along=False) == ()
 
 
 @pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 20), marks=EXTENDED)])
@@ -134,7 +134,7 @@ def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds
 
 @pytest.mark.parametrize("shaft", [False, True])
 def test_longest_pitch_and_stroke_are_those_of_the_recorded_path(shaft: bool) -> None:
-    """The pitch limit is a quarter of the path, the stroke the path plus a tenth at either end."""
+    """The pitch limit is half of the path, the stroke the path plus a tenth at either end."""
     rig = Rig.thesis() if shaft else Rig()
     radius_m = rig.bearing.radius_m if rig.bearing is not None else 1.0
     t = np.arange(0.0, 20.0, STEP_S)

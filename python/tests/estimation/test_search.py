@@ -78,7 +78,7 @@ def test_approach_orders_starts_by_their_sum_of_squares() -> None:
 
 def test_many_starts_are_first_reduced_by_their_error_in_one_run() -> None:
     rig, runs, _ = simulated(11)
-    effects = ("sensor_offset", "inertia", "gravity")
+    effects = ("sensor_offset", "presliding", "gravity")
     problem = Problem(Campaign.prepare(rig, runs[:3]), "stribeck", "journal", effects)
     every = problem.starts({})
     kept = Approach(problem, [{}]).starts

@@ -8,6 +8,7 @@ use super::{Effect, Info, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::parameter::Start;
 use crate::real::Real;
 
 /// Reflected inertia of a mass in the force path.
@@ -26,7 +27,8 @@ described! {
             "a rigid mass; the acceleration is derived from the recorded motion and has \
                  its noise",
         );
-    m_e = "m_e", "kg", "effective mass at the sliding surface", [0.0, 1e6], [4.0, 100.0] null(0.0);
+    m_e = "m_e", "kg", "effective mass at the sliding surface",
+        [0.0, 1e6], [4.0, 100.0] null(0.0) .start(Start::Mass);
 }
 
 impl<T: Real> Inertia<T> {

@@ -101,6 +101,13 @@ def best_term_update(
     return None if fewer is None else TermUpdate(fewer, present)
 
 
+def re_estimated_motion(candidates: Candidates, present: Names) -> Campaign | None:
+    """Campaign with the errors of the motion estimated again; None if they do not change."""
+    model = _model(candidates, present, present)
+    proposal = errors_of_motion(model)
+    return proposal.campaign if proposal is not None and is_accepted(proposal, model) else None
+
+
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:
     """Input of the term estimators: the fit of `effects`, compared with that of `present`."""
     return Model(

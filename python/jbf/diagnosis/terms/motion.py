@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,10 @@ from jbf.estimation.generalised_least_squares import (
     with_motion_errors,
     with_recorded_motion,
 )
+from jbf.estimation.held_out import held_out_parts
+from jbf.estimation.held_out_comparison import predictive_deviance
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -41,9 +46,22 @@ def errors_of_motion(model: Model) -> Proposal | None:
     of_before, of_after = _common_weights((campaign, solution), (again.campaign, after))
     gain = old.deviance(solution.residuals, of_before)
     gain -= new.deviance(after.residuals, of_after)
+    held_out = _held_out_deviance(model.problem, solution, old, of_before)
+    held_out -= _held_out_deviance(again, after, new, of_after)
     # A problem with a shifted force has samples of its own.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
-    return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2))
+    return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2), held_out)
+
+
+def _held_out_deviance(
+    problem: Problem, solution: Solution, motion: ErrorsInMotion, weights: Sequence[Array]
+) -> float:
+    """Minus twice the log predictive density of held-out runs, with given errors of the motion."""
+    samples = replace(solution.samples, weight=tuple(weights), motion=motion)
+    parts = held_out_parts(problem, solution)
+    log_determinant = motion.deviance([np.zeros(len(w)) for w in weights], weights)
+    variance = motion.noise**2
+    return predictive_deviance(solution, parts, samples, WHITE, variance) + log_determinant
 
 
 def _none(solution: Solution) -> ErrorsInMotion:

@@ -36,6 +36,8 @@ class Proposal:
         Increase of twice the log marginal likelihood of the independent samples.
     price
         Threshold for the gain, less the thresholds of the effects that the term replaces.
+    held_out_gain
+        Increase of twice the log density of held-out runs; None if held-out errors are compared.
     """
 
     campaign: Campaign
@@ -43,6 +45,7 @@ class Proposal:
     solution: Solution
     gain: float
     price: float
+    held_out_gain: float | None = None
 
     @property
     def evidence(self) -> float:
@@ -122,8 +125,11 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
 
     The mean log ratio over the runs must exceed the limit of the policy by more than its standard
     error. All runs have equal weight, so that with between-run variance the largest deviation does
-    not dominate. Delays and the quantisation bias are those of the fit to all runs.
+    not dominate. Delays and the quantisation bias are those of the fit to all runs. A term that
+    changes the covariance of the errors must not decrease the density of held-out runs.
     """
+    if proposal.held_out_gain is not None:
+        return proposal.held_out_gain < 0.0
     fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
         np.array([np.sqrt(np.mean(e**2)) if len(e) else np.nan for e in held_out_by_run(*fit)])

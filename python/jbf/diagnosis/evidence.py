@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
-from jbf.estimation.campaign import SMOOTHS_FORCE, Campaign
+from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
 from jbf.estimation.likelihood import (
     effective_share,
     likelihood_gain,
@@ -54,7 +54,7 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if _filters_motion(candidates, richer, simpler):
+    if _describes_motion_errors(candidates, richer, simpler):
         gain = min(gain, price)
     return gain - price
 
@@ -68,18 +68,15 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
         return 0.0
     if _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
         return 0.0
-    if _filters_motion(candidates, richer, simpler):
+    if _describes_motion_errors(candidates, richer, simpler):
         return 0.0
     gain = min(likelihood_gain(richer, simpler), robust_gain(richer, simpler))
     return gain - price_of(candidates, richer.free - simpler.free)
 
 
-def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
-    """Whether an added smoothing effect explains no more than the errors of the motion.
-
-    Smoothing effects filter a force or a motion and can thereby reduce errors of the motion.
-    """
-    if not SMOOTHS_FORCE & (set(richer.effects) - set(simpler.effects)):
+def _describes_motion_errors(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
+    """Whether an added effect that distorts the force explains no more than the motion's errors."""
+    if not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
     samples = common_samples(richer.samples, simpler.samples)
     explained = samples.rms(simpler.residuals) ** 2 - samples.rms(richer.residuals) ** 2

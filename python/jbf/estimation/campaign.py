@@ -40,15 +40,17 @@ from jbf.records.weight_angle import check_weight_angles
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-SMOOTHS_FORCE = frozenset((
-    "sensor_hysteresis", "sensor_lag", "time_delay", "backlash", "drive_compliance",
+DISTORTS_FORCE = frozenset((
+    "sensor_hysteresis", "sensor_lag", "sensor_nonlinearity", "time_delay", "backlash",
+    "drive_compliance",
 ))  # fmt: skip
-"""Effects that filter a force or a motion.
+"""Effects that filter a force or a motion, or distort the force.
 
 These effects are not tried where errors of the acceleration are a large part of the residual,
-because they would smooth these errors.
+because they would describe these errors. The estimated acceleration is too small at its peaks,
+where the force is largest, as for a curved characteristic of the sensor.
 """
-NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia", "sensor_nonlinearity", "sensor_drift"}
+NEEDS_RECORDED_FORCE = DISTORTS_FORCE | {"inertia", "sensor_drift"}
 """Effects that are not tried without a recorded force.
 
 Backlash and compliance act between the driven part and the sensor. In a coast-down these two
@@ -239,7 +241,7 @@ class Campaign:
             return "no force was recorded"
         if effect.name in NEEDS_TIME and self.steady:
             return "steady states do not contain it"
-        if effect.name in SMOOTHS_FORCE and self.motion_uncertain:
+        if effect.name in DISTORTS_FORCE and self.motion_uncertain:
             return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
             if column not in COLUMNS_OF_EVERY_RUN and any(

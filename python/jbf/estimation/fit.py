@@ -38,6 +38,7 @@ from jbf.records.arguments import one_of
 from jbf.records.findings.finding import Finding
 from jbf.records.rig import Rig
 from jbf.records.run import Run
+from jbf.records.weight_angle import weight_acts_over
 from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
@@ -213,6 +214,8 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     }
     if campaign.travel is not None:
         facts["travel"] = campaign.travel
+    if "gravity" in problem.effects:
+        facts["weight_acts_over"] = weight_acts_over(campaign.prepared[0].run)
     model = Model(
         campaign.rig,
         problem.law,

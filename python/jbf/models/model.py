@@ -43,6 +43,7 @@ from jbf.records.arguments import by_name, list_of_runs, numbers, of_kind, one_r
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
+from jbf.records.weight_angle import require_weight_angle
 from jbf.results import Shown
 from jbf.text_files import write_text
 
@@ -187,8 +188,10 @@ class Model(Shown):
         return [delayed.read(self.values, *sample, sd_s).mean_n for sample in read]
 
     def require_columns(self, run: Run) -> None:
-        """Raise an InputError if a run lacks a column that an effect of this model needs."""
+        """Raise an InputError if a run lacks a column that this model or its fit needs."""
         require_record(self.rig, run, self.effects)
+        if "weight_acts_over" in self.fit:
+            require_weight_angle(run, str(self.fit["weight_acts_over"]))
 
     def steady_friction(self, velocity: npt.ArrayLike) -> Array:
         """Steady friction force of the base law (the Stribeck curve), N.

@@ -44,3 +44,26 @@ def check_weight_angles(rig: Rig, runs: Sequence[Run]) -> None:
             problem=f"is missing, but {having[0].name} has it",
             remedy="record it in every run, or in none",
         )
+
+
+def weight_acts_over(run: Run) -> str:
+    """Name of the column with the angle on which the torque of the weight depends."""
+    return WEIGHT_ANGLE if WEIGHT_ANGLE in run.extra else "angle_rad"
+
+
+def require_weight_angle(run: Run, fitted: str) -> None:
+    """Raise an InputError if the weight of a run acts over another angle than in the fit.
+
+    Parameters
+    ----------
+    fitted
+        `weight_acts_over` of the fitted runs.
+    """
+    if weight_acts_over(run) != fitted:
+        state = "missing" if fitted == WEIGHT_ANGLE else "present"
+        raise InputError(
+            file=run.path or run.name,
+            column=WEIGHT_ANGLE,
+            problem=f"is {state}, unlike in the runs to which the weight was fitted",
+            remedy="predict runs with the same angles as those of the fit",
+        )

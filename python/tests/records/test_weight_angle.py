@@ -102,6 +102,21 @@ def test_runs_with_and_without_weight_angle_are_refused_together(arm: Path) -> N
     assert error.value.file == str(second.path)
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_prediction_over_another_angle_than_that_of_the_fit_is_refused(
+    arm: Path, known: bool
+) -> None:
+    with_angle = jbf.read_runs(arm, RIG)
+    without = [replace(run, extra={}) for run in with_angle]
+    runs, others = (with_angle, without) if known else (without, with_angle)
+    fitted(runs).model.save(arm / "model.toml")
+    model = jbf.Model.load(arm / "model.toml")
+    assert len(model.predict(runs[0])) == len(TIME_S)
+    with pytest.raises(jbf.InputError, match="weight_angle_rad") as error:
+        model.predict(others[0])
+    assert error.value.file == str(others[0].path)
+
+
 def test_bad_cell_of_the_weight_angle_is_reported_with_its_row(arm: Path) -> None:
     file = arm / "0.csv"
     lines = file.read_text().splitlines()

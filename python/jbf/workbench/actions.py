@@ -17,6 +17,7 @@ from jbf.workbench import (
     samples,
     saved_files,
     session_bundle,
+    session_content,
     views,
 )
 from jbf.workbench.session import Session
@@ -50,8 +51,15 @@ def state(session: Session, parameters: Parameters) -> Any:
 
 
 def listing(session: Session, parameters: Parameters) -> Any:
-    """Files of the session's folder by kind, and the samples of the package."""
-    return {**session.folder.listing(), "samples": samples.listing()}
+    """Files of the session's folder by kind, kept models of each rig, and the samples."""
+    found = session.folder.listing()
+    campaigns = {session_content.key_of(**c): {**c, "models": 0} for c in found["campaigns"]}
+    kept = {session_content.key_of_content(c): c for c in session.kept_campaigns()}
+    return {
+        **found,
+        "campaigns": list((campaigns | kept).values()),
+        "samples": samples.listing(),
+    }
 
 
 def series(session: Session, parameters: Parameters) -> Any:

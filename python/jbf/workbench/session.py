@@ -6,7 +6,7 @@ import json
 import tempfile
 import threading
 from collections.abc import Sequence
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from jbf.errors import InputError
@@ -24,6 +24,7 @@ from jbf.workbench.files import Folder
 from jbf.workbench.jobs import Ending, Jobs
 from jbf.workbench.models import Models
 from jbf.workbench.reading import Readings
+from jbf.workbench.session_content import Content, Key, content_of, key_of, read_content
 from jbf.workbench.source_cache import SourceCache
 from jbf.workbench.work import Kind, Order, Settings
 
@@ -37,6 +38,8 @@ class Session:
         Counter of changes; clients reload the state when it increases.
     lock
         Lock held while the rig, the runs or the models change.
+    kept
+        Trims and models of the rigs that were open before, by the files of rig and runs.
     """
 
     def __init__(self, folder: Folder) -> None:
@@ -50,6 +53,7 @@ class Session:
         self.bench: Bench | None = None
         self.models = Models()
         self.law = "journal"
+        self.kept: dict[Key, Content] = {}
         self._kept = tempfile.TemporaryDirectory(prefix="jbf-workbench-")
         self._places = 0
         self._owed = False
@@ -86,7 +90,9 @@ class Session:
         return self.bench
 
     def open(self, rig_name: str, run_names: Sequence[str]) -> None:
-        """Open a rig and runs, which replace the present ones.
+        """Open a rig and runs in place of the present ones.
+
+        The models of the present rig are kept; they return when it is opened again.
 
         Raises
         ------
@@ -94,20 +100,59 @@ class Session:
             A file is wrong, the reading was cancelled, or a fit is running; the present rig and
             runs are kept.
         """
+        key = key_of(rig_name, run_names)
+        with self.lock:
+            content = self.content() if key == self._key() else self.kept.get(key)
         with self.readings.begin(f"opening {rig_name}") as reading:
-            bench = Bench.read(self.folder, rig_name, run_names, reading.progress)
-        self.put(bench, Models())
-        self.say("done", f"{rig_name} is open, with {count_of(len(run_names), 'run')}")
+            if content is None:
+                bench = Bench.read(self.folder, rig_name, run_names, reading.progress)
+                self.put(bench, Models())
+            else:
+                place = PurePosixPath(rig_name)
+                self.put(*read_content(self.folder, content, place, reading.progress))
+                self.show(self.models.current)
+        words = f"{rig_name} is open, with {count_of(len(run_names), 'run')}"
+        if self.models.nodes:
+            words += f" and {count_of(len(self.models.nodes), 'model')}"
+        if models := sum(len(kept["models"]) for kept in self.kept.values()):
+            words += f"; {count_of(models, 'model')} of other rigs kept: open the rig to continue"
+        self.say("done", words)
+
+    def content(self) -> Content:
+        """Rig, runs, trims and models that are open, as JSON data.
+
+        Raises
+        ------
+        InputError
+            No rig is open.
+        """
+        with self.lock:
+            return content_of(self.on_bench(), self.models, self.law)
 
     def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
-        """Replace the rig, the runs and the models of the session."""
+        """Replace the rig, the runs and the models of the session; the present ones are kept."""
         with self.lock:
             if self.jobs.job is not None:
                 raise InputError(problem="a fit is running", remedy="wait for it, or cancel it")
+            if (key := self._key()) is not None:
+                self.kept[key] = self.content()
+            self.kept.pop(key_of(bench.rig_name, bench.run_names), None)
             self.bench, self.models = bench, models
             self._loaded = {}
             self.law = law or first_law(bench.rig)
         bench.examine_runs(self.changed)
+
+    def _key(self) -> Key | None:
+        """Key of the open rig and its runs."""
+        return None if self.bench is None else key_of(self.bench.rig_name, self.bench.run_names)
+
+    def kept_campaigns(self) -> list[dict[str, Any]]:
+        """Rigs with their runs that were open before, and the number of their models."""
+        with self.lock:
+            return [
+                {"rig": kept["rig"], "runs": kept["runs"], "models": len(kept["models"])}
+                for kept in self.kept.values()
+            ]
 
     def choose_law(self, law: str) -> None:
         """Choose the base law of models without a parent."""

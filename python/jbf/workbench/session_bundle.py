@@ -15,7 +15,7 @@ from jbf.errors import InputError
 from jbf.text_files import write_texts
 from jbf.workbench.guard import LARGEST_UPLOAD
 from jbf.workbench.session import Session
-from jbf.workbench.session_file import FILE, checked, content_of, restore
+from jbf.workbench.session_file import FILE, checked, file_content, restore
 
 SUFFIX = ".zip"
 RIG = "rig.toml"
@@ -27,14 +27,14 @@ _UNREADABLE = (
 
 
 def bundle(session: Session) -> bytes:
-    """Archive with the session file, the rig and all runs of a session.
+    """Archive with the session file, the rig and all runs of the open rig of a session.
 
     Raises
     ------
     InputError
         No rig is open.
     """
-    content = content_of(session)
+    content = file_content(session)
     folder = session.folder
     names = {content["rig"]: RIG}
     for name in content["runs"]:

@@ -272,3 +272,15 @@ def test_error_about_a_run_that_is_no_longer_open_is_not_shown(
     # The browser itself logs the status of the late request.
     others = [words for words in messages.complaints if "422" not in words]
     assert others == messages.outside == []
+
+
+def test_models_return_when_their_rig_is_opened_again(opened: tuple[Page, Messages]) -> None:
+    page, _ = opened
+    enter(page, 1)
+    if page.locator("#runs [data-key=run-other]").count() == 0:
+        page.click("[data-key='open-second/rig.toml']")
+        page.wait_for_selector("#runs [data-key=run-other]")
+    assert page.locator("[data-key=model-1]").count() == 0
+    page.wait_for_selector("li >> text=/first.*models? kept/")
+    page.click("[data-key='open-first/rig.toml']")
+    page.wait_for_selector("[data-key=model-1]")

@@ -198,6 +198,35 @@ def test_loaded_session_has_saved_models_trims_and_exclusions(fitted: Session) -
     again.close()
 
 
+def test_models_of_a_rig_return_when_it_is_opened_again(fitted: Session) -> None:
+    names = list(fitted.on_bench().run_names)
+    fitted.on_bench().trim("stopgo", (1.0, 20.0))
+    before = fitted.models.ledger()
+    fitted.open("rig.toml", names[:1])
+    assert fitted.models.nodes == {}
+    listed = client_of(fitted).get("/api/files").json()["campaigns"]
+    assert [c["models"] for c in listed if len(c["runs"]) == len(names)] == [2]
+    # A session that is saved now contains both rigs.
+    save(fitted)
+    again = Session(fitted.folder)
+    load(again)
+    for session in (fitted, again):
+        session.open("rig.toml", names[::-1])
+        wait_until_idle(session)
+        assert session.models.ledger() == before
+        assert session.on_bench().trims == {"stopgo": (1.0, 20.0)}
+        assert session.records(2) is not None
+    again.close()
+
+
+def test_rig_that_is_opened_twice_keeps_its_models(fitted: Session) -> None:
+    before = fitted.models.ledger()
+    fitted.open("rig.toml", list(fitted.on_bench().run_names))
+    wait_until_idle(fitted)
+    assert fitted.models.ledger() == before
+    assert not any(kept["models"] for kept in fitted.kept_campaigns())
+
+
 @pytest.mark.extended
 def test_model_selected_during_a_comparison_is_compared_later(fitted: Session) -> None:
     save(fitted)

@@ -3,6 +3,8 @@ import { get, upload } from "./api.js";
 import { h, put } from "./dom.js";
 import { ImportForm } from "./import_form.js";
 
+const count = (n, what) => `${n} ${what}${n === 1 ? "" : "s"}`;
+
 export class Files {
   // `importing(now)` is called when the import is shown or put away.
   constructor(page, place, { map, importing, done }) {
@@ -15,7 +17,8 @@ export class Files {
     try { found = await get("files"); } catch (error) { this.page.say(error.message); return; }
     const { state } = this.page, some = state.runs.length > 0;
     const open = (rig, runs) => this.page.do("open", { rig, runs }).then((ok) => ok && this.page.enter("Data"));
-    const campaigns = found.campaigns.filter((c) => c.rig !== state.rig);
+    const files = (names) => JSON.stringify([...names].sort()), present = files(state.runs.map((run) => run.file));
+    const campaigns = found.campaigns.filter((c) => c.rig !== state.rig || files(c.runs) !== present);
     const samples = h("div", { class: "cards" }, found.samples.map((sample) => h("div", { class: "card" },
       h("h3", {}, sample.title), h("p", {}, `${sample.words}. Simulated.`),
       h("button", { "data-key": `sample-${sample.name}`, onclick: () => this.page.do("sample", { name: sample.name }) }, "Open the sample"))));
@@ -23,7 +26,7 @@ export class Files {
       campaigns.length ? h("section", {}, h("h2", {}, some ? "Open another rig with its runs" : "Rigs and their runs in this folder"),
         h("ul", { class: "plain" }, campaigns.map((c) => h("li", {},
           h("button", { "data-key": `open-${c.rig}`, "aria-label": `open ${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"),
-          ` ${c.rig}, ${c.runs.length} run${c.runs.length === 1 ? "" : "s"}`)))) : null,
+          ` ${c.rig}, ${count(c.runs.length, "run")}`, c.models ? h("b", {}, `, ${count(c.models, "model")} kept`) : null)))) : null,
       found.sessions.length ? h("section", {}, h("h2", {}, "Saved sessions"), h("ul", { class: "plain" }, found.sessions.map((name) => h("li", {},
         h("button", { "data-key": `session-${name}`, "aria-label": `open ${name}`,
           onclick: () => this.page.do("open_session", { file: name }).then((ok) => ok && this.done()) }, "Open"), ` ${name}`)))) : null,

@@ -2,8 +2,8 @@
 import { h, put } from "./dom.js";
 
 const THINGS = [
-  ["session", "Session (workbench.json)", "all models and trims; jbf workbench in this folder restores it", null],
-  ["bundle", "Session as one file (session.zip)", "with the rig and all runs; drop it on the page of any folder", "session.zip"],
+  ["session", "Session (workbench.json)", "all rigs with their models and trims; jbf workbench in this folder restores it", null],
+  ["bundle", "Session as one file (session.zip)", "the open rig with its runs and models; drop it on the page of any folder", "session.zip"],
   ["model", "Model (model.toml)", "for jbf predict, compare, export", "model.toml"],
   ["report", "Report (report.html)", "one page with pictures", "report.html"],
   ["rust", "Constants in Rust (model.rs)", "for a controller with jbf-core", "model.rs"],

@@ -31,6 +31,7 @@ from jbf.models.catalogue import (
 from jbf.models.model import Model
 from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
+from jbf.reporting.effect_words import size_words
 from jbf.reporting.tables import power_rows
 from jbf.reporting.words import headline_and_rest, verdict_sentence
 from jbf.workbench.marks import failure_marks
@@ -55,6 +56,7 @@ def of_model(comparison: Comparison) -> Answer:
         "findings": [f.to_dict() for f in comparison.findings],
         "parameters": _parameters(model, model.parameters),
         "trials": None,
+        "sizes": {name: f"{size_words(comparison, name)}." for name in model.effects},
         "stribeck": _stribeck(comparison),
         "regimes": _regimes(comparison),
     }

@@ -130,6 +130,11 @@ class Bench:
             raise InputError(problem="all runs are excluded", remedy="include at least one")
         return runs
 
+    def used(self) -> dict[str, list[float] | None]:
+        """Trim of each run that is not excluded from fits; None for a complete run."""
+        names = (run.name for run in self.runs if run.name not in self.excluded)
+        return {name: list(self.trims[name]) if name in self.trims else None for name in names}
+
     def _trimmed(self, run: Run) -> Run:
         """Part of a run within its time limits in `trims`; the run itself without limits."""
         if run.name not in self.trims:

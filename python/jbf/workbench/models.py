@@ -110,11 +110,14 @@ class Models:
             node = self.nodes[at]
             line.append(node)
             at = node["parent"]
-        keys = ("id", "words", "effects", "rms", "held_out_rms", "noise_rms")
+        keys = ("id", "words", "effects", "changes", "rms", "held_out_rms", "noise_rms")
         return [{key: node.get(key) for key in keys} for node in reversed(line)]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Data of the model tree for the page, without the contents named in `LARGE`."""
+    def to_dict(self, used: Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """Data of the model tree for the page, without the contents named in `LARGE`.
+
+        `used` are the runs and trims that a fit would use now.
+        """
         return {
             "current": self.current,
             "compared": self.compared,
@@ -122,7 +125,7 @@ class Models:
             "ledger": self.ledger(),
             "nodes": [
                 {key: value for key, value in node.items() if key not in LARGE}
-                | {"has_report": "report" in node, "banner": banner_of(node)}
+                | {"has_report": "report" in node, "banner": banner_of(node, used)}
                 for node in self.nodes.values()
             ],
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -189,17 +189,18 @@ class Session:
                 settings=settings or Settings(),
             )  # fmt: skip
             words = _words(kind, law, effects)
+            origin = {"asked_law": law, "records": place.name, "used": bench.used()}
 
             numbers: list[int] = []
 
             def part(answer: Any) -> None:
-                numbers.append(self._add_model(answer, parent, "", law, place))
+                numbers.append(self._add_model(answer, parent, "", origin))
 
             def on_end(ending: Ending, answer: Any) -> None:
                 if numbers:
                     self._add_ranking(ending, answer, numbers[0])
                 else:
-                    self._finish(ending, answer, parent, words, law, place)
+                    self._finish(ending, answer, parent, words, origin)
 
             self.message = {}
             self.jobs.start(words, order, on_end, part)
@@ -256,15 +257,18 @@ class Session:
         self._places += 1
         return Path(self._kept.name) / str(self._places)
 
-    def _add_model(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
+    def _add_model(
+        self, answer: Any, parent: int | None, how: str, origin: Mapping[str, Any]
+    ) -> int:
         """Add the model of a finished job to the tree, and return its number.
 
-        `law` is the requested law, `how` the prefix of the model's label.
+        `how` is the prefix of the model's label, `origin` the requested law, the name of its
+        records and the fitted runs.
         """
         named = " + ".join([answer["law"], *answer["effects"]])
+        changes = f", {answer['changes']}" if "changes" in answer else ""
         with self.lock:
-            content = {**answer, "asked_law": law, "records": place.name}
-            return self.models.add(parent, f"{how}{named}", content)
+            return self.models.add(parent, f"{how}{named}{changes}", {**answer, **origin})
 
     def _add_ranking(self, ending: Ending, answer: Any, number: int) -> None:
         """Add the ranking of candidates to a model that is already in the tree."""
@@ -285,15 +289,16 @@ class Session:
             self.say("error", f"{node['words']}: {answer}")
 
     def _finish(
-        self, ending: Ending, answer: Any, parent: int | None, words: str, law: str, place: Path
-    ) -> None:
+        self, ending: Ending, answer: Any, parent: int | None, words: str,
+        origin: Mapping[str, Any],
+    ) -> None:  # fmt: skip
         """Handle the end of a job: add its model, or report its error."""
         if ending == "done":
-            how = "diagnosed: " if "diagnosis" in answer else "set: "
-            self._add_model(answer, parent, how, law, place)
+            how = "diagnosed: " if "diagnosis" in answer else ""
+            self._add_model(answer, parent, how, origin)
             self.say("done", f"{words}: done")
         elif ending == "stopped" and answer:
-            self._add_model({**answer, "trials": []}, parent, "stopped at: ", law, place)
+            self._add_model({**answer, "trials": []}, parent, "stopped at: ", origin)
             self.say("done", f"{words}: cancelled; the best model so far is kept, unfinished")
         elif ending == "stopped":
             self.say("done", f"{words}: cancelled before a model was found")
@@ -343,7 +348,7 @@ class Session:
                 "effects": effects_for(self._law_of_next_fit()),
                 "job": None if job is None else job.to_dict(),
                 "message": self.message,
-                **self.models.to_dict(),
+                **self.models.to_dict(None if bench is None else bench.used()),
             }
             if bench is not None:
                 node = None if self.models.current is None else self.models.node()
@@ -375,5 +380,5 @@ class Session:
 
 def _words(kind: Kind, law: str, effects: Sequence[str]) -> str:
     if kind == "diagnose":
-        return f"diagnosis of {law}"
+        return "diagnosis, law selected from the data" if law == AUTO else f"diagnosis of {law}"
     return " + ".join([law, *effects])

@@ -102,6 +102,8 @@ def _node(node: dict[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
     if "ways" in node.get("stribeck", {}):
         branches = _with_current_keys(node["stribeck"]["ways"], _RENAMED["directions"])
         node["stribeck"] = {**node["stribeck"], "directions": branches}
+    if "used" in node:
+        node["used"] = {names.get(name, name): span for name, span in node["used"].items()}
     if "record_names" in node:
         node["record_names"] = [names.get(name, name) for name in node["record_names"]]
     return node

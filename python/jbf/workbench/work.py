@@ -70,6 +70,12 @@ class Settings:
         }
         return cls(numbers["start"], numbers["fixed"], bounds)
 
+    def words(self) -> str:
+        """Name the parameters with settings, as in `F_c fixed`."""
+        groups = {"fixed": self.fixed, "bounded": self.bounds, "started elsewhere": self.start}
+        parts = [f"{', '.join(names)} {how}" for how, names in groups.items() if names]
+        return "; ".join(parts) or "fitted again"
+
     def to_dict(self) -> dict[str, Any]:
         """JSON data of the settings."""
         return {
@@ -190,7 +196,8 @@ def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
         )  # fmt: skip
         compared = compare(fitted.model, order.runs)
         answer = {**of_model(compared), **of_fit(fitted), **write_records(compared, order.folder)}
-        return {**answer, "trials": [], "settings": chosen.to_dict()}
+        settings = {"settings": chosen.to_dict(), "changes": chosen.words()}
+        return {**answer, **settings, "trials": []}
     if order.kind == "round":
 
         def fitted_as(found: Fit, comparison: Comparison) -> None:

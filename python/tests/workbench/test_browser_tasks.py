@@ -38,7 +38,7 @@ def test_engineer_completes_all_tasks_by_visible_labels(tmp_path: Path) -> None:
         page.get_by_role("tab", name="3 Model").click()
         page.get_by_label("Law").select_option("coulomb")
         press("Data only")
-        press("Fit coulomb alone")
+        press("Fit coulomb without effects")
         finished("coulomb (")
         press("add inertia")
         finished("coulomb + inertia (")
@@ -51,7 +51,7 @@ def test_engineer_completes_all_tasks_by_visible_labels(tmp_path: Path) -> None:
         page.get_by_label("value of F_c").fill("8")
         page.get_by_label("fix F_c").check()
         press("Fit with these settings")
-        finished("set: coulomb + inertia")
+        finished("coulomb + inertia, F_c fixed")
         # Export.
         page.get_by_role("tab", name="4 Export").click()
         with page.expect_download() as download:

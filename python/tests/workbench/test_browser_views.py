@@ -91,7 +91,7 @@ def test_laws_that_need_a_bearing_are_last_and_disabled_for_a_slide(
     assert names[:3] == ["auto", "coulomb", "stribeck"]
     assert dict(laws)["journal"]
     assert names.index("journal") > names.index("rate_and_state")
-    assert page.inner_text("[data-key=fit-law]") == "Fit coulomb alone"
+    assert page.inner_text("[data-key=fit-law]") == "Fit coulomb without effects"
 
 
 def test_bars_of_the_error_are_proportional_to_the_error(opened: tuple[Page, Messages]) -> None:

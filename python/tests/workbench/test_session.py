@@ -61,6 +61,25 @@ def test_adding_missing_effect_reduces_held_out_rms_to_the_noise(fitted: Session
     assert second["held_out_rms"] == pytest.approx(NOISE_N, rel=0.05)
 
 
+def test_size_of_an_effect_is_its_contribution_in_the_unit_of_the_rig(fitted: Session) -> None:
+    assert fitted.models.node(1)["sizes"] == {}
+    words = fitted.models.node(2)["sizes"]["coulomb_drag"].split()
+    # A Coulomb drag contributes its constant force at every included sample.
+    force = fitted.models.node(2)["parameters"]["coulomb_drag.F_d"]["value"]
+    at = words.index("N")
+    assert float(words[at - 1]) == pytest.approx(force, rel=0.01)
+    assert float(words[at + 2]) == pytest.approx(force / NOISE_N, rel=0.06)
+
+
+def test_banner_is_stale_while_a_fitted_run_is_excluded(fitted: Session) -> None:
+    def stale() -> list[bool]:
+        return [node["banner"]["stale"] for node in fitted.to_dict()["nodes"]]
+
+    assert stale() == [False, False]
+    fitted.on_bench().leave_out("sine_w2.0", True)
+    assert stale() == [True, True]
+
+
 def test_missing_effect_is_ranked_first_among_the_candidates(fitted: Session) -> None:
     trials = fitted.models.node(1)["trials"]
     assert trials[0]["effect"] == "coulomb_drag"

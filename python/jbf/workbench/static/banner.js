@@ -12,6 +12,7 @@ export function showBanner(page, place) {
     number === null ? null : h("div", { class: "number", "data-key": "times-noise" }, `${MARKS[node.banner.kind]} ${times(number)}`,
       h("small", {}, "the noise"), h("small", {}, node.banner.error === "fit" ? "error of the fit" : "held-out error")),
     h("div", { class: "words" }, h("b", {}, node ? node.banner.words : headline(state.job)),
+      node?.banner.sizes.length ? h("p", { "data-key": "sizes" }, node.banner.sizes.join(" ")) : null,
       step ? h("p", {}, `Next: ${step.words}`) : null),
     step?.buttons ? h("div", { class: "row tight" }, step.buttons.map(([key, words, act]) =>
       h("button", { class: "main", "data-key": `next-${key}`, onclick: act }, words))) : null);
@@ -28,6 +29,7 @@ function nextStep(page) {
   if (!node) return { words: "diagnose automatically, or fit a law and add effects in 3 Model.", buttons: [diagnose, ...(here === "Model" ? [] : [go("Model", "3 Model")])] };
   const best = (node.trials ?? []).find((t) => t.outcome === "added");
   const explore = here === "Explore" ? [] : [go("Explore", "2 Explore")];
+  if (node.banner.stale) return { words: "diagnose the present selection, or fit a law to it in 3 Model.", buttons: [diagnose, ...(here === "Model" ? [] : [go("Model", "3 Model")])] };
   if (!node.diagnosis && best) return { words: `add ${best.effect}, the effect with the largest gain.`,
     buttons: [["add", `Add ${best.effect}`, () => { page.enter("Model"); page.do("fit", { effects: [...node.effects, best.effect], parent: node.id }); }], ...explore] };
   if (!node.diagnosis && node.banner.kind !== "good") return { words: "see where the model fails, or diagnose automatically.", buttons: [diagnose, ...explore] };

@@ -72,6 +72,6 @@ export class DataSection {
       h("span", { class: "faint" }, "Handles in the plot trim the run; drag to zoom, double-click to reset.")),
     run.findings === null ? h("p", { class: "faint" }, "Checking the data quality…")
       : findings.length ? [h("h3", {}, "Data quality"), h("ul", {}, findings.map((f) => h("li", {}, `${f.words}${f.done && f.done !== "none" ? ` (${f.done})` : ""}`)))]
-        : h("p", { class: "faint" }, "No finding."));
+        : h("p", { class: "faint" }, "No problem with the data quality was found."));
   }
 }

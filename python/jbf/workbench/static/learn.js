@@ -39,9 +39,9 @@ export class LearnSection {
       state.laws.map(({ name, summary, refused }) =>
         h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name}: ${refused ?? summary}`)));
     put(this.head, h("label", {}, "Law ", law),
-      h("button", { "data-key": "fit-law", disabled: busy, onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} alone`),
+      h("button", { "data-key": "fit-law", disabled: busy, onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} without effects`),
       h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"));
-    put(this.verdict, node?.diagnosis ? node.diagnosis.sentence : "");
+    put(this.verdict, node?.diagnosis ? [h("b", {}, "Diagnosis of the base law: "), node.diagnosis.sentence] : "");
     showLedger(page, this.ledger); showCandidates(page, this.ranks);
     about(page, this.about); sideBySide(page, this.beside);
     this.values.show(this.model !== node?.id); this.model = node?.id;

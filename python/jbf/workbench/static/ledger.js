@@ -6,7 +6,7 @@ const newly = (now, before) => [...now.filter((e) => !before.includes(e)).map((e
 
 export function showLedger(page, place) {
   const node = page.model, steps = node?.diagnosis ? node.diagnosis.steps : page.state.ledger, unit = page.units.force;
-  const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) || "own settings" : newly(step.effects, []) || "base law" }));
+  const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) || step.changes || "fitted again" : newly(step.effects, []) || "base law" }));
   if (!line.length) { put(place, h("p", { class: "faint" }, "No model yet: fit the base law, or diagnose.")); return; }
   const noise = line.at(-1).noise_rms || 1, most = Math.max(1, ...line.flatMap((l) => [l.rms, l.held_out_rms]).map((v) => (v ?? 0) / noise));
   const x = (v) => 150 + 235 * v / noise / most;

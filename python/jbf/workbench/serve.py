@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import secrets
+import signal
 import socket
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from jbf.errors import InputError
 from jbf.workbench import vendored
@@ -27,6 +30,7 @@ def listening(port: int) -> socket.socket:
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((HOST, port))
+        listener.listen()
     except (OSError, OverflowError) as error:
         listener.close()
         problem = f"port {port} is not available ({error})"
@@ -36,8 +40,30 @@ def listening(port: int) -> socket.socket:
     return listener
 
 
+@contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """Convert a request of the system to terminate to `SystemExit`, so that all is cleaned up."""
+
+    def end(number: int, _: object) -> None:
+        raise SystemExit(128 + number)
+
+    names = ("SIGTERM", "SIGHUP") if threading.current_thread() is threading.main_thread() else ()
+    numbers = [number for name in names if (number := getattr(signal, name, None)) is not None]
+    # A signal that is ignored (nohup) remains ignored.
+    ended_by = [n for n in numbers if signal.getsignal(n) is signal.SIG_DFL]
+    for number in ended_by:
+        signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number in ended_by:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool = False) -> None:
     """Serve the workbench page for a folder until Ctrl-C; `opened` is called with its address.
+
+    SIGTERM and SIGHUP end it as well, with `SystemExit`.
 
     Raises
     ------
@@ -72,7 +98,8 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
         )
         # The fragment of an address is sent to no server and appears in no log.
         opened(f"http://{HOST}:{at}/#token={token}")
-        uvicorn.Server(config).run(sockets=[listener])
+        with _ended_by_signals():
+            uvicorn.Server(config).run(sockets=[listener])
     finally:
         session.close()
         listener.close()

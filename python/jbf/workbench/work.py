@@ -9,7 +9,7 @@ import _thread
 import signal
 import threading
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -123,8 +123,14 @@ def main(connection: Connection, order: Order) -> None:
     Progress messages are `("progress", message, done, total)`. The last message is
     `("done", result)`, `("error", words)`, or after `STOP` `("stopped", result)` with the best
     result so far, if any. A round also sends `("part", result)` when the model is fitted and its
-    candidates are not yet tested.
+    candidates are not yet tested. The process ends if the server has ended.
     """
+    with suppress(BrokenPipeError):
+        _execute(connection, order)
+
+
+def _execute(connection: Connection, order: Order) -> None:
+    """Execute a job and send its messages; raise `BrokenPipeError` if the server has ended."""
 
     def progress(message: str, done: int, total: int) -> None:
         connection.send(("progress", message, done, total))

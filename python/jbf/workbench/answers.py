@@ -165,14 +165,23 @@ def of_step(step: Step) -> Answer:
 
 
 def of_power(power: Iterable[Power], model: Model) -> list[Answer]:
-    """Detection limits of effects, worded as in the reports, for the page."""
+    """Detection limits of effects, worded as in the reports, for the page.
+
+    The `meaning` is that of the parameter in which the limit is given; empty without a limit.
+    """
     limits = list(power)
     rows = power_rows(limits, model.law, model.rig.quantities)
     names = ("effect", "detectable", "share", "distinguishable", "confounded_with")
     return [
-        {**dict(zip(names, row, strict=True)), "hidden": p.hidden}
+        {**dict(zip(names, row, strict=True)), "hidden": p.hidden, "meaning": _meaning(p, model)}
         for p, row in zip(limits, rows, strict=True)
     ]
+
+
+def _meaning(limit: Power, model: Model) -> str:
+    if limit.detectable_80 is None or limit.always:
+        return ""
+    return parameters_of(model.law, (limit.effect,))[f"{limit.effect}.{limit.parameter}"].meaning
 
 
 def of_diagnosis(diagnosis: Diagnosis) -> Answer:

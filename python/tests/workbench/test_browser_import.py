@@ -72,6 +72,27 @@ def test_questions_of_an_import_are_answered_by_clicks(tmp_path: Path) -> None:
         assert messages.complaints == messages.outside == []
 
 
+def test_table_of_columns_with_long_names_fits_the_window(tmp_path: Path) -> None:
+    t = np.arange(0.0, 8.0, 0.01)
+    names = ("controller_timestamp_seconds[s]", "/slide/measuring_system/actual_position[mm]",
+             "/slide/load_cell/friction_force_of_the_guide[N]")  # fmt: skip
+    rows = np.column_stack([1.7e9 + t, 4e2 * np.sin(2 * t), 0.3 * np.sign(np.cos(2 * t))])
+    np.savetxt(tmp_path / "long.csv", rows, "%.12f", ",", header=",".join(names), comments="")
+    with served(tmp_path) as address, examine_runs(address) as (page, _):
+        # The list of the open runs takes a part of the width.
+        page.click("[data-key=sample-axis]")
+        page.wait_for_selector("#runs [data-key=run-run_1]")
+        page.click("[data-key='pick-long.csv']")
+        page.click("[data-key=import-chosen]")
+        page.wait_for_selector("[data-key=import-diagnose]:enabled")
+        page.click("[data-key=columns]")
+        widths = (
+            "[...document.querySelectorAll('.scroll')].map((e) => [e.scrollWidth, e.clientWidth])"
+        )
+        ((wide, shown),) = page.evaluate(widths)
+        assert wide <= shown
+
+
 @pytest.mark.extended
 def test_sample_opens_by_one_click_on_the_empty_page(tmp_path: Path) -> None:
     with served(tmp_path) as address, examine_runs(address) as (page, messages):

@@ -47,6 +47,9 @@ def test_engineer_completes_all_tasks_by_visible_labels(tmp_path: Path) -> None:
         table = page.locator("section, div", has_text="Models side by side").last
         table.wait_for()
         page.get_by_role("columnheader", name="coulomb + inertia").wait_for()
+        press("Plot the compared models")
+        page.locator(".u-legend", has_text="coulomb").first.wait_for()
+        page.get_by_role("tab", name="3 Model").click()
         # Fix a parameter.
         page.get_by_label("value of F_c").fill("8")
         page.get_by_label("fix F_c").check()

@@ -211,8 +211,9 @@ def test_edited_parameter_is_drawn_fixed_fitted_and_compared(
     page.wait_for_selector("[data-key=model-2] >> text=nine newtons")
     page.check("[data-key=beside-1]")
     page.wait_for_selector("[data-key=side-by-side] >> text=nine newtons")
-    enter(page, 2)
+    page.click("[data-key=plot-compared]")
     page.wait_for_selector(".u-legend >> text=coulomb")
+    assert page.locator("[data-key=plot-compared]").count() == 0
     page.keyboard.press("z")
     page.wait_for_selector("[data-key=model-1][aria-pressed=true]")
     page.keyboard.press("y")

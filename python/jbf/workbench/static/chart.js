@@ -37,7 +37,7 @@ export class Chart {
         drag: { x: true, y: false, setScale: false },
         bind: { dblclick: () => () => { if (zoomed) zoomed(null, null); } },
       },
-      axes: [axis(across, { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 54, labelGap: 2, space: height < 150 ? 18 : 30 })],
+      axes: [axis(across, { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: (u, values) => Math.max(54, 18 + 7 * Math.max(0, ...(values ?? []).map((v) => v.length))), labelGap: 2, space: height < 150 ? 14 : 30 })],
       series: [{ label: across }, ...curves],
       hooks: {
         drawClear: [(u) => this.shade(u)],

@@ -42,3 +42,6 @@ export function key(name, words) {
 
 // A ratio to the noise, as in "12 ×".
 export const times = (ratio) => (ratio === null || ratio === undefined ? "–" : `${ratio < 9.95 ? ratio.toFixed(1) : Math.round(ratio)} ×`);
+
+// Start of a label behind the end of a bar, not across a vertical line.
+export const behind = (end, line) => (end < line && end + 40 > line ? line : end) + 5;

@@ -83,7 +83,7 @@ export class ImportForm {
         h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close"),
         h("label", {}, "as folder ", into)),
       this.plots,
-      this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", {},
+      this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", { class: "columns" },
         h("thead", {}, h("tr", {}, ["column", "course", "first values", "quantity", "unit", "negate", "read as"].map((w) => h("th", {}, w)))),
         h("tbody", {}, found.columns.map((column) => this.row(column)))), this.formulas(), this.rig())),
       this.part("map-text", "Map as text (formulas, cuts, clocks)", text));

@@ -37,10 +37,11 @@ export class LearnSection {
     this.lead();
     const law = h("select", { class: "law", "aria-label": "law", "data-key": "law", disabled: busy, onchange: (e) => page.do("law", { law: e.target.value }) },
       state.laws.map(({ name, summary, refused }) =>
-        h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name}: ${refused ?? summary}`)));
+        h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name === "auto" ? "automatic" : name}: ${refused ?? summary}`)));
     put(this.head, h("label", {}, "Law ", law),
-      h("button", { "data-key": "fit-law", disabled: busy, onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} without effects`),
-      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"));
+      h("button", { "data-key": "fit-law", disabled: busy, title: state.law === "auto" ? "the first law to try for this rig; Diagnose selects the law" : "",
+        onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} without effects`),
+      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose"));
     put(this.verdict, node?.diagnosis ? [h("b", {}, "Diagnosis of the base law: "), node.diagnosis.sentence] : "");
     showLedger(page, this.ledger); showCandidates(page, this.ranks);
     about(page, this.about); sideBySide(page, this.beside);

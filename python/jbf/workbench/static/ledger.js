@@ -1,5 +1,5 @@
 // Error by step as a multiple of the noise, on a linear scale: the length of a bar is the error.
-import { h, key, number, put, s, times } from "./dom.js";
+import { behind, h, key, number, put, s, times } from "./dom.js";
 
 // What one model has that the one before it has not, and the other way round.
 const newly = (now, before) => [...now.filter((e) => !before.includes(e)).map((e) => `+ ${e}`), ...before.filter((e) => !now.includes(e)).map((e) => `- ${e}`)].join(" ");
@@ -17,7 +17,7 @@ export function showLedger(page, place) {
     for (const [k, value, name] of [[0, l.rms, "bar"], [1, l.held_out_rms, "bar out"]]) {
       if (!value) continue;
       picture.append(s("rect", { class: name, x: 150, y: top + 16 * k, width: Math.max(x(value) - 150, 1), height: 13 }),
-        s("text", { x: x(value) + 5, y: top + 16 * k + 11 }, `${times(value / noise)} `), s("title", {}, `${number(value)} ${unit}`));
+        s("text", { x: behind(x(value), x(noise)), y: top + 16 * k + 11 }, `${times(value / noise)} `), s("title", {}, `${number(value)} ${unit}`));
     }
   });
   const foot = line.length * 40;

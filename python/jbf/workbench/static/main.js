@@ -54,6 +54,7 @@ class Page {
     section.replaceChildren(); section.setAttribute("aria-label", name);
     this.section = new SECTIONS[name](this, section);
     this.tabs();
+    showModels(this, place("models"));
     this.section.update(null);
     this.banner();
   }

@@ -47,7 +47,7 @@ export class Parameters {
       value.value = Number((Number(value.value) + way * 0.01 * (Math.abs(p.value) || 1)).toPrecision(6));
       value.dispatchEvent(new Event("input"));
     });
-    return h("tr", {}, h("td", { title: p.meaning }, name), h("td", {}, value), h("td", {}, p.unit ?? ""),
+    return h("tr", {}, h("td", {}, name, h("br"), h("small", {}, p.meaning)), h("td", {}, value), h("td", {}, p.unit ?? ""),
       h("td", {}, held ? `held${p.note ? `: ${p.note}` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`),
       h("td", {}, h("input", { type: "checkbox", checked: this.fixed.has(name), "aria-label": `fix ${name}`, "data-key": `fix-${name}`,
         onchange: (e) => this.fixed[e.target.checked ? "add" : "delete"](name) })),
@@ -86,6 +86,9 @@ export class Parameters {
   }
 }
 
+// The key of a parameter with its plain name.
+const plain = (name, nodes) => [name, h("br"), h("small", {}, nodes.find((n) => n.parameters[name]).parameters[name].meaning)];
+
 // The current model and those that are compared with it, one column each.
 export function sideBySide(page, place) {
   const { state } = page, ids = [...new Set([state.current, ...state.compared])].filter((id) => id !== null);
@@ -94,12 +97,13 @@ export function sideBySide(page, place) {
   const unit = page.units.force, names = [...new Set(nodes.flatMap((n) => Object.keys(n.parameters)))];
   const cell = (words) => h("td", { class: "n" }, words);
   const line = (title, of) => h("tr", {}, h("th", { scope: "row" }, title), nodes.map((n) => cell(of(n))));
-  put(place, h("h2", {}, "Models side by side"), h("div", { class: "scroll" }, h("table", { "data-key": "side-by-side" },
+  put(place, h("div", { class: "plot-head" }, h("h2", {}, "Models side by side"),
+    h("button", { "data-key": "plot-side-by-side", onclick: () => page.enter("Explore") }, "Plot them in 2 Explore")), h("div", { class: "scroll" }, h("table", { "data-key": "side-by-side" },
     h("thead", {}, h("tr", {}, h("td", {}), nodes.map((n) => h("th", { class: "n", scope: "col" }, n.name || n.words)))),
     h("tbody", {}, line("held-out error, times the noise", (n) => (n.held_out_rms && n.noise_rms ? `${(n.held_out_rms / n.noise_rms).toFixed(2)} ×` : "–")),
       line(`RMS of the fit (${unit})`, (n) => number(n.rms)), line(`noise (${unit})`, (n) => number(n.noise_rms)),
       line("estimated parameters", (n) => String(Object.values(n.parameters).filter((p) => !p.held).length)),
-      names.map((name) => line(name, (n) => (n.parameters[name] ? `${number(n.parameters[name].value, 4)} ${n.parameters[name].unit ?? ""}` : "–")))))));
+      names.map((name) => line(plain(name, nodes), (n) => (n.parameters[name] ? `${number(n.parameters[name].value, 4)} ${n.parameters[name].unit ?? ""}` : "–")))))));
 }
 
 // Name and note of the model, and its effects with a button that removes each.

@@ -1,5 +1,5 @@
 // Residual by regime: RMS in each regime of the law as a multiple of the noise.
-import { h, number, put, s, times } from "./dom.js";
+import { behind, h, number, put, s, times } from "./dom.js";
 
 export function showRegimes(page, place) {
   const node = page.model, rows = node?.regimes ?? [], unit = page.units.force;
@@ -9,7 +9,7 @@ export function showRegimes(page, place) {
   rows.forEach((r, i) => picture.append(
     s("text", { x: 184, y: 26 * i + 17, "text-anchor": "end" }, r.name),
     s("rect", { class: "bar", x: 190, y: 26 * i + 4, width: Math.max(x(r.rms / noise) - 190, 1), height: 17 }),
-    s("text", { x: x(r.rms / noise) + 5, y: 26 * i + 17 }, `${times(r.rms / noise)} `)));
+    s("text", { x: behind(x(r.rms / noise), x(1)), y: 26 * i + 17 }, `${times(r.rms / noise)} `)));
   picture.append(s("line", { class: "floor", x1: x(1), x2: x(1), y1: 0, y2: rows.length * 26 }));
   put(place, h("h2", {}, "Residual by regime, times the noise"), picture,
     h("p", { class: "faint" }, rows.map((r) => `${r.name}: mean ${number(r.mean)} ${unit}, ${r.samples} samples`).join("; "), "."));

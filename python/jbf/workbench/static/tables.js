@@ -19,5 +19,6 @@ export function correlations({ names, matrix }) {
 
 export function power(rows) {
   return h("div", { class: "scroll" }, h("table", {}, head(["effect", "detectable from", "of friction", "distinct from", "confounded with"]),
-    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.detectable, p.share, p.distinguishable, p.confounded_with].map((words) => h("td", { class: "n" }, words)))))));
+    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), h("td", { class: "n" }, p.detectable, p.meaning ? [h("br"), h("small", {}, p.meaning)] : null),
+      [p.share, p.distinguishable, p.confounded_with].map((words) => h("td", { class: "n" }, words)))))));
 }

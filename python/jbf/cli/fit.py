@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,13 @@ from jbf.cli.arguments import (
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import Report, shown
 from jbf.errors import InputError, Stopped, Unfinished, quoted
-from jbf.models.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
+from jbf.models.catalogue import (
+    Parameter,
+    check_applies,
+    find_parameter,
+    in_chain_order,
+    parameters_of,
+)
 
 if TYPE_CHECKING:
     from jbf.estimation.fit import Fit
@@ -37,6 +44,7 @@ class FitOptions:
     law: LawOptions
     fix: tuple[str, ...]
     start: tuple[str, ...]
+    bounds: tuple[str, ...]
     bootstrap: int | None
     hold_out: tuple[str, ...]
     out: str | None
@@ -71,6 +79,13 @@ def add(commands: Commands) -> None:
         help="start value of a parameter, SI units; may be repeated",
     )
     parser.add_argument(
+        "--bounds",
+        metavar="NAME=LOW:HIGH",
+        action="append",
+        default=[],
+        help="bounds of a parameter, SI units; either may be omitted; may be repeated",
+    )
+    parser.add_argument(
         "--bootstrap",
         metavar="N",
         type=int,
@@ -98,6 +113,7 @@ def run(options: FitOptions) -> int:
     check_applies(law, effects)
     fixed = _values("--fix", options.fix, law, effects)
     start = _values("--start", options.start, law, effects)
+    bounds = _bounds(options.bounds, law, effects)
     outputs.check(targets, [run.path for run in runs if run.path])
     runs, held_out = hold_out.split(runs, options.hold_out)
 
@@ -118,6 +134,7 @@ def run(options: FitOptions) -> int:
                 clock=options.law.clock,
                 start=start,
                 fixed=fixed,
+                bounds=bounds,
                 time_limit_s=limit,
             )
             if repeats is not None:
@@ -154,31 +171,70 @@ def _values(
     option: str, items: tuple[str, ...], law: str, effects: tuple[str, ...]
 ) -> dict[str, float]:
     """Parse the items `NAME=VALUE` of an option into values by full parameter name."""
-    parameters = parameters_of(law, effects)
     values: dict[str, float] = {}
-    for item in items:
-        name, equals, text = item.partition("=")
-        place = f"{option} {item}"
-        if not equals:
-            raise InputError(file=place, problem="has no value", remedy="write NAME=VALUE")
-        try:
-            full = find_parameter(name.strip(), parameters)
-        except InputError as error:
-            raise error.within(file=place) from None
-        try:
-            value = float(text)
-        except ValueError:
-            raise InputError(
-                file=place, problem=f"{quoted(text)} is not a number", remedy="write NAME=VALUE"
-            ) from None
-        if full in values:
-            raise InputError(file=place, problem=f"{full} is given twice", remedy="give it once")
-        page = parameters[full]
+    for place, name, page, text in _parsed(option, items, "VALUE", law, effects):
+        value = _number(text, place, "NAME=VALUE")
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(
                 file=place,
                 problem="is out of range",
                 remedy=f"choose a value from {page.lower:g} to {page.upper:g}",
             )
-        values[full] = value
+        values[name] = value
     return values
+
+
+def _bounds(
+    items: tuple[str, ...], law: str, effects: tuple[str, ...]
+) -> dict[str, tuple[float, float]]:
+    """Parse the items `NAME=LOW:HIGH` of `--bounds` into pairs by full parameter name.
+
+    An omitted end is the bound of the catalogue.
+    """
+    pairs: dict[str, tuple[float, float]] = {}
+    for place, name, page, text in _parsed("--bounds", items, "LOW:HIGH", law, effects):
+        ends = text.split(":")
+        if len(ends) != 2:
+            raise InputError(file=place, problem="is not an interval", remedy="write NAME=LOW:HIGH")
+        low, high = (
+            _number(end, place, "NAME=LOW:HIGH") if end.strip() else limit
+            for end, limit in zip(ends, (page.lower, page.upper), strict=True)
+        )
+        if not max(low, page.lower) < min(high, page.upper):
+            raise InputError(
+                file=place,
+                problem="contains no interval of permitted values",
+                remedy=f"give LOW < HIGH within {page.lower:g} to {page.upper:g}, or use --fix",
+            )
+        pairs[name] = low, high
+    return pairs
+
+
+def _parsed(
+    option: str, items: tuple[str, ...], form: str, law: str, effects: tuple[str, ...]
+) -> Iterator[tuple[str, str, Parameter, str]]:
+    """Yield option with item, full name, catalogue entry and text of each item `NAME=text`."""
+    parameters = parameters_of(law, effects)
+    names: set[str] = set()
+    for item in items:
+        name, equals, text = item.partition("=")
+        place = f"{option} {item}"
+        if not equals:
+            raise InputError(file=place, problem="has no value", remedy=f"write NAME={form}")
+        try:
+            full = find_parameter(name.strip(), parameters)
+        except InputError as error:
+            raise error.within(file=place) from None
+        if full in names:
+            raise InputError(file=place, problem=f"{full} is given twice", remedy="give it once")
+        names.add(full)
+        yield place, full, parameters[full], text
+
+
+def _number(text: str, place: str, form: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(
+            file=place, problem=f"{quoted(text)} is not a number", remedy=f"write {form}"
+        ) from None

@@ -60,8 +60,10 @@ def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
             for option, key in (("fix", "fixed"), ("start", "start"))
             for name, value in node.get("settings", {}).get(key, {}).items()
         )
-        if node.get("settings", {}).get("bounds"):
-            lines.append("# bounds are available in Python only")
+        options += "".join(
+            f" --bounds {shlex.quote(f'{name}={low!r}:{high!r}')}"
+            for name, (low, high) in node.get("settings", {}).get("bounds", {}).items()
+        )
         lines.append(f"jbf fit {files} --law {node['law']}{effects}{options} --out model.toml")
     return "\n".join(lines)
 

@@ -59,6 +59,15 @@ REFUSED = {
     "import into others": ("import a.csv --map map.toml --folder many", "many: is not empty"),
     "model misspelt": ("compare modle.toml a.csv", 'not exist; did you mean "model.toml"?'),
     "run for a rig": ("diagnose rig.toml rig.toml", "where a run should be"),
+    "bounds without an interval": (
+        f"{FIT} --bounds f_m=0.2",
+        "--bounds f_m=0.2: is not an interval; write NAME=LOW:HIGH",
+    ),
+    "empty bounds": (f"{FIT} --bounds f_m=0.3:0.2", "give LOW < HIGH within"),
+    "bounds that are no numbers": (
+        f"{FIT} --bounds f_m=a:0.2",
+        "is not a number; write NAME=LOW:HIGH",
+    ),
     "same run twice": (f"{COMPARE} a.csv", "is given twice"),
     "no effects file": (f"{DIAG} --effects-from no.py", "no.py: is not a file; name a Python file"),
     "effects file exits": (f"{DIAG} --effects-from ends.py", "ends.py, row 1: fails: SystemExit"),

@@ -96,6 +96,18 @@ def test_parameters_given_with_the_fix_option_keep_their_values(campaign: Path) 
     assert parameters["coulomb_drag.F_d"].value == 1.0
 
 
+@pytest.mark.parametrize(("interval", "limit"), [("1:1.5", 1.5), ("2.5:", 2.5)])
+def test_estimate_stays_within_the_bounds_option(
+    campaign: Path, interval: str, limit: float
+) -> None:
+    out = campaign / "fitted.toml"
+    command = ["fit", str(campaign / "rig.toml"), str(campaign / "runs"), "--out", str(out)]
+    bounds = f"coulomb_drag.F_d={interval}"
+    assert main([*command, "--effects", "coulomb_drag", "--bounds", bounds]) == 0
+    # The hidden drag is outside the bounds.
+    assert jbf.Model.load(out).parameters["coulomb_drag.F_d"].value == pytest.approx(limit)
+
+
 def test_compare_command_writes_json_and_page(model: Path, campaign: Path, capsys: Capture) -> None:
     runs = [str(path) for path in sorted((campaign / "runs").iterdir())]
     result, page = campaign / "c.json", campaign / "c.html"

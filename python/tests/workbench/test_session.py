@@ -269,7 +269,9 @@ def test_fit_with_settings_keeps_fixed_values_and_is_the_command_that_is_shown(
     assert node["parameters"]["coulomb_drag.F_d"]["value"] == 1.5
     assert node["rms"] > fitted.models.node(2)["rms"]
     assert node["settings"]["bounds"] == {"gamma": [1.0, 300.0]}
-    assert "--fix coulomb_drag.F_d=1.5" in fitted.to_dict()["command"]
+    command = fitted.to_dict()["command"]
+    assert "--fix coulomb_drag.F_d=1.5" in command
+    assert "--bounds gamma=1.0:300.0" in command
     fitted.show(2)
     del fitted.models.nodes[node["id"]]
 

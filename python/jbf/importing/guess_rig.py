@@ -12,6 +12,15 @@ from jbf.importing.targets import LINEAR, ROTARY
 
 Sections = dict[str, dict[str, Any]]
 
+BEARING: Sections = {
+    "bearing": dict.fromkeys(("radius_m", "length_m", "clearance_m", "mass_kg", "count"), OPEN),
+    "lubricant": {"viscosity_pa_s": OPEN},
+    "load": {"normal_n": OPEN},
+}
+"""Sections of a journal bearing, whose values no recording contains."""
+LEVER = f" * {OPEN} [mm]"
+"""End of the expression of a torque that is a force at an unknown radius."""
+
 _QUESTIONS = {
     "rated_torque_n_m": 'what is the motor\'s rated torque, 100 % (such as "1.27 N m")?',
     "rated_force_n": 'what is the motor\'s rated force, 100 % (such as "60 N")?',
@@ -66,6 +75,26 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
     return {"drive": drive}, [
         Question(f"drive.{key}", f"{_QUESTIONS[key]} Write it into the map") for key in open_keys
     ]
+
+
+def as_bearing(columns: Mapping[str, str]) -> tuple[dict[str, str], Sections]:
+    """Expressions of the columns of a map for a journal bearing, and the sections of its rig.
+
+    A force that was taken for one at a lever acts at the surface of the journal.
+    """
+    renamed = {
+        "friction_n" if expression.endswith(LEVER) else key: expression.removesuffix(LEVER)
+        for key, expression in columns.items()
+    }
+    return renamed, {name: dict(section) for name, section in BEARING.items()}
+
+
+def as_drive(columns: Mapping[str, str]) -> tuple[dict[str, str], Sections]:
+    """Expressions of the columns of a map for a drive, and the sections of its rig."""
+    renamed = dict(columns)
+    if "friction_n" in columns and not any(key in columns for key in LINEAR):
+        renamed["torque_n_m"] = f"{renamed.pop('friction_n')}{LEVER}"
+    return renamed, guess_rig(set(renamed))[0]
 
 
 def assumed_machine(sections: Mapping[str, Mapping[str, Any]]) -> str | None:
@@ -134,7 +163,7 @@ def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[
         both = f"{force.expression} or {entries['torque_n_m'].expression}"
         entries["torque_n_m"] = Entry("torque_n_m", OPEN, f"one of: {both}", sure=False)
         return [Question("torque_n_m", f"which is the friction: {both}?")]
-    lever = f"{force.expression} * {OPEN} [mm]"
+    lever = f"{force.expression}{LEVER}"
     entries["torque_n_m"] = Entry("torque_n_m", lever, force.why, sure=False)
     question = (
         f"at what radius does {force.expression} act? Write it in place of the {OPEN}; "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 from jbf.errors import InputError
@@ -31,7 +32,7 @@ def check_rig_columns(rig: Rig, mapping: Map) -> None:
     missing = [key for key in required if key not in keys]
     if missing:
         remedy = "add it under [columns], or correct the rig's section"
-        derived = _at_journal(rig, mapping, missing)
+        derived = [f'{k} = "{e}"' for k, (_, e) in at_journal(rig, mapping.columns).items()]
         raise InputError(
             file=file,
             key=f"columns.{missing[0]}",
@@ -47,22 +48,38 @@ _ROTARY = {
 """Columns of a shaft from which a column at the surface of the journal is derived."""
 
 
-def _at_journal(rig: Rig, mapping: Map, missing: list[str]) -> list[str]:
-    """Lines of the map for missing columns at the journal, from the columns of the shaft."""
+def at_journal(rig: Rig, columns: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """Columns at the surface of a journal that a bearing requires, from those of the shaft.
+
+    Parameters
+    ----------
+    rig
+        The rig; without a bearing, the result is empty.
+    columns
+        Expressions over the columns of the file, by column of a run.
+
+    Returns
+    -------
+    dict
+        For each missing column of a run the column of the shaft, and the expression.
+    """
     if rig.bearing is None:
-        return []
+        return {}
     radius = f"{1e3 * rig.bearing.radius_m:.6g} [mm]"
     count = rig.bearing.count
     operations = {
         "friction_n": f" / {radius}" + (f" / {count}" if count > 1 else ""),
         "velocity_m_s": f" * {radius}",
     }
-    lines = []
-    for key in missing:
-        source = next((name for name in _ROTARY.get(key, ()) if name in mapping.columns), None)
-        if source is not None:
-            expression = mapping.columns[source].strip()
+    present = set(columns)
+    if present & {"position_m", "angle_rad"}:
+        present.add("velocity_m_s")
+    derived = {}
+    for key, sources in _ROTARY.items():
+        source = next((name for name in sources if name in columns), None)
+        if key not in present and source is not None:
+            expression = columns[source].strip()
             if re.search(r"[-+]", re.sub(r"`[^`]*`", "", expression)):
                 expression = f"({expression})"
-            lines.append(f'{key} = "{expression}{operations[key]}"')
-    return lines
+            derived[key] = source, f"{expression}{operations[key]}"
+    return derived

@@ -21,9 +21,11 @@ from jbf.importing.columns import split_unit
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.registry import open_source
 from jbf.importing.formats.table import Values
-from jbf.importing.guess_rig import guess_rig
+from jbf.importing.guess_rig import as_bearing, as_drive, guess_rig
 from jbf.importing.mapping import Map, read_map
+from jbf.importing.rig_columns import at_journal
 from jbf.importing.targets import KNOWN, wanted_unit
+from jbf.records.rig import Rig
 from jbf.units.unit import parse_unit
 
 FIRST = 3
@@ -154,7 +156,8 @@ def rewritten(
     """Replace columns and rig values in the text of a map.
 
     If the columns imply a different machine, its sections are guessed again; values already filled
-    in are kept.
+    in are kept. Once the values of a bearing are complete, a torque and a rotational speed are
+    converted to the surface of the journal.
 
     Parameters
     ----------
@@ -163,7 +166,8 @@ def rewritten(
     columns
         Column of a run to its expression.
     rig
-        Values by dotted name, such as `drive.pitch_m`.
+        Values by dotted name, such as `drive.pitch_m`; `machine` is `bearing` or `drive`, if the
+        user selects another machine.
     rate_hz
         Sampling rate of a file without times, Hz.
 
@@ -174,8 +178,13 @@ def rewritten(
     """
     before = map_of(text)
     document: Any = _parsed(_ANSWERED.sub("", text))
+    if "machine" in rig:
+        convert = as_bearing if rig["machine"] == "bearing" else as_drive
+        columns, sections = convert(columns)
+    else:
+        sections = _sections(before, columns, rig)
+        columns = _at_journal(columns, sections)
     _put(document["columns"], {k: v for k, v in columns.items() if k in before.columns})
-    sections = _sections(before, columns, rig)
     for name in set(before.rig) - set(sections):
         del document[name]
     for name, content in sections.items():
@@ -222,7 +231,7 @@ def _sections(
     """
     filled = {k: v for part in before.rig.values() for k, v in part.items() if v != OPEN}
     sections = {name: dict(part) for name, part in before.rig.items()}
-    if set(columns) != set(before.columns) or not before.rig:
+    if "bearing" not in sections and (set(columns) != set(before.columns) or not before.rig):
         guessed, _ = guess_rig(set(columns))
         if guessed:
             sections = {
@@ -236,6 +245,21 @@ def _sections(
             if value not in ("", None):
                 sections[name][key] = value
     return sections
+
+
+def _at_journal(
+    columns: Mapping[str, str], sections: Mapping[str, Mapping[str, Any]]
+) -> Mapping[str, str]:
+    """Columns with those of the shaft converted to the surface of a journal, if it is complete."""
+    if any(value == OPEN for part in sections.values() for value in part.values()):
+        return columns
+    try:
+        derived = at_journal(Rig.from_mapping(sections), columns)
+    except InputError:  # reported by the preview
+        return columns
+    replaced = {source for source, _ in derived.values()}
+    kept = {key: text for key, text in columns.items() if key not in replaced}
+    return {**kept, **{key: text for key, (_, text) in derived.items()}}
 
 
 def _put(section: Any, content: Mapping[str, Any]) -> None:
@@ -286,7 +310,7 @@ def changed_by(
 
 def _number(value: Any) -> Any:
     try:
-        return float(value)
+        return int(value) if str(value).isdecimal() else float(value)
     except (TypeError, ValueError):
         return str(value)
 

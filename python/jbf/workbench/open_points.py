@@ -8,6 +8,7 @@ from typing import Any
 
 from jbf.importing.columns import parse_header
 from jbf.importing.expression import OPEN
+from jbf.importing.guess_rig import LEVER
 from jbf.importing.guessed import Question
 from jbf.importing.map_text import CHOICES as COMMENTS
 from jbf.importing.mapping import Map
@@ -32,6 +33,12 @@ RIG_WORDS = {
     "gear_ratio": ("How many turns of the motor is one turn of the output?", "100"),
     "inertia_kg_m2": ("What is the moved inertia?", "0.02 kg m^2"),
     "mass_kg": ("What is the moved mass?", "3.5 kg"),
+    "radius_m": ("Radius of the journal, half its diameter", "20 mm"),
+    "length_m": ("Length of the bearing", "30 mm"),
+    "clearance_m": ("Radial clearance", "0.05 mm"),
+    "count": ("Number of bearings on the shaft", "1"),
+    "viscosity_pa_s": ("Viscosity of the lubricant", "5 mPa s"),
+    "normal_n": ("Load on one bearing", "200 N"),
     "friction": ("What does the friction column contain?", ""),
     "motion": ("How does the machine move?", ""),
 }
@@ -51,7 +58,8 @@ def open_points(mapping: Map, columns: Sequence[Mapping[str, Any]]) -> list[Poin
     list of dict
         `kind`, `title`, and `choices`: pairs of value and label. The kinds are `unit` and `formula`
         (of the column `key`), `column` (which column is `key`), `quantity` (which column is a
-        friction or a motion) and `value` (of the rig at `place`).
+        friction or a motion), `value` (of the rig at `place`) and `values` (several `fields` of the
+        rig, each with its place, title and example).
     """
     points: list[Point] = []
     for key, expression in mapping.columns.items():
@@ -70,9 +78,15 @@ def open_points(mapping: Map, columns: Sequence[Mapping[str, Any]]) -> list[Poin
         names = [str(c["name"]) for c in columns if c["kind"] != "word"]
         points.append({"kind": "column", "key": "time_s", "title": "Which column is the time?",
                        "choices": [(name, name) for name in names]})  # fmt: skip
+    if "bearing" in mapping.rig:
+        points += _of_bearing(mapping)
     for section, part in mapping.rig.items():
         for key, value in part.items():
-            if value == OPEN and not (key == "friction" and not keys & set(FRICTION)):
+            if (
+                "bearing" not in mapping.rig
+                and value == OPEN
+                and not (key == "friction" and not keys & set(FRICTION))
+            ):
                 title, example = RIG_WORDS.get(key, (f"What is {key.replace('_', ' ')}?", ""))
                 choices = [(c, c) for c in re.findall(r'"(\w+)"', COMMENTS.get(key, ""))]
                 points.append({"kind": "value", "place": f"{section}.{key}", "title": title,
@@ -95,8 +109,26 @@ def _of_column(
         likely = [n for n in names if _could_be(n, key, columns) and f"`{n}`" not in used]
         return {"kind": "column", "key": key, "title": f"Which column is the {words}?",
                 "choices": [(n, n) for n in likely or names]}  # fmt: skip
+    if expression.endswith(LEVER):
+        force = expression.removesuffix(LEVER).replace("`", "")
+        return {"kind": "formula", "key": key, "expression": expression, "number": "radius, mm",
+                "title": f"At what radius does the force {force} act?",
+                "choices": [("bearing", "it is a journal bearing")]}  # fmt: skip
     return {"kind": "formula", "key": key, "expression": expression, "choices": [],
-            "title": f"{words}: which number belongs in {expression}?"}  # fmt: skip
+            "title": f"{words} = {expression}: which number is the {OPEN}?"}  # fmt: skip
+
+
+def _of_bearing(mapping: Map) -> list[Point]:
+    """Question about the open values of a journal bearing, on one card; empty without any."""
+    words = {**RIG_WORDS, "mass_kg": ("Rotating mass", "2 kg")}
+    fields = [
+        {"place": f"{section}.{key}", "title": words[key][0], "example": words[key][1]}
+        for section, part in mapping.rig.items()
+        for key, value in part.items()
+        if value == OPEN and key in words
+    ]
+    title = "What are the dimensions of the bearing?"
+    return [{"kind": "values", "title": title, "fields": fields, "choices": []}] if fields else []
 
 
 def _could_be(name: str, key: str, columns: Sequence[Mapping[str, Any]]) -> bool:
@@ -136,6 +168,7 @@ def _quantities(
 def remaining(questions: Sequence[Question], points: Sequence[Point]) -> list[Point]:
     """Questions of a proposal that no open point of its map covers, to be confirmed by the user."""
     covered = {str(p.get(k, "")) for p in points for k in ("key", "place", "column")}
+    covered |= {str(f["place"]) for p in points for f in p.get("fields", ())}
     covered |= {value for p in points if p["kind"] == "column" for value, _ in p["choices"]}
     covered |= {"friction", "motion"} if any(p["kind"] == "quantity" for p in points) else set()
     return [

@@ -255,3 +255,63 @@ def test_sample_opens_with_its_runs_and_is_copied_once(folder: Path, name: str) 
     assert len([path for path in folder.iterdir() if path.is_dir()]) == 1
     assert client.post("/api/sample", json={"name": "other"}).status_code == 422
     session.close()
+
+
+GEOMETRY = {
+    "bearing.radius_m": "20 mm", "bearing.length_m": "30 mm", "bearing.clearance_m": "0.05 mm",
+    "bearing.mass_kg": "2", "bearing.count": "2", "lubricant.viscosity_pa_s": "5 mPa s",
+    "load.normal_n": "200 N",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("header", "friction"),
+    [("Time [s],Torque [N m],Speed [rpm]", 1.25), ("Time [s],Force [N],Angle [rad]", 0.05)],
+)
+def test_recording_of_a_journal_bearing_is_imported_by_its_geometry(
+    tmp_path: Path, header: str, friction: float
+) -> None:
+    """A torque of 0.05 N m on two journals of 20 mm radius, or a force of 0.05 N."""
+    t = np.arange(0.0, 8.0, 0.01)
+    motion = 30.0 + 20.0 * np.sin(t)
+    rows = np.column_stack([t, np.full(len(t), 0.05), motion])
+    np.savetxt(tmp_path / "shaft.csv", rows, "%.6f", ",", header=header, comments="")
+    session = Session(Folder.of(tmp_path))
+    client = client_of(session)
+    found = client.post("/api/look", json={"file": "shaft.csv"}).json()
+    text = found["map"]
+
+    def answer(**rig: str) -> Any:
+        form = {"rows": [r for r in found["form"]["rows"] if "column" in r], "rig": rig}
+        request = {"files": ["shaft.csv"], "map": text, "form": form}
+        return client.post("/api/try", json=request).json()
+
+    outcome = answer(machine="bearing")
+    (point,) = outcome["open"]
+    assert {field["place"] for field in point["fields"]} == set(GEOMETRY)
+    found, text = outcome, outcome["map"]
+    outcome = answer(**GEOMETRY)
+    assert (outcome["open"], outcome["problem"]) == ([], None)
+    columns = {c["name"]: c for c in outcome["runs"][0]["columns"]}
+    assert columns["friction_n"]["median"] == pytest.approx(friction)
+    request = {"files": ["shaft.csv"], "map": outcome["map"], "into": "runs"}
+    assert client.post("/api/import", json=request).status_code == 200
+    bearing = session.on_bench().rig.bearing
+    assert bearing is not None
+    assert (bearing.radius_m, bearing.count) == (pytest.approx(0.02), 2)
+    assert session.law == "journal"
+    # The map is also valid on the command line.
+    (tmp_path / "map.toml").write_text(outcome["map"])
+    log, place = str(tmp_path / "shaft.csv"), str(tmp_path / "again")
+    assert main(["import", log, "--map", str(tmp_path / "map.toml"), "--folder", place]) == 0
+    # The other kind of machine can be selected again.
+    found, text = outcome, outcome["map"]
+    assert set(answer(machine="drive")["form"]["rig"]) == {"drive"}
+    session.close()
+
+
+def test_open_geometry_of_a_bearing_is_not_asked_twice(client: TestClient) -> None:
+    request = {**request_of(client), "form": {"rows": [], "rig": {"machine": "bearing"}}}
+    outcome = client.post("/api/try", json=request).json()
+    places = [field["place"] for point in outcome["open"] for field in point.get("fields", ())]
+    assert sorted(places) == sorted(GEOMETRY)

@@ -5,6 +5,8 @@ import { h, number, put, s } from "./dom.js";
 const RIG = {
   motion: "motion", friction: "friction measured as", rated_torque_n_m: "rated torque (100 %)", rated_force_n: "rated force (100 %)",
   torque_constant_n_m_a: "torque per ampere", force_constant_n_a: "force per ampere",
+  radius_m: "radius of the journal", length_m: "length", clearance_m: "radial clearance", mass_kg: "mass", count: "bearings on the shaft",
+  viscosity_pa_s: "viscosity", normal_n: "load on one bearing",
   pitch_m: "travel per revolution", gear_ratio: "gear ratio (motor/output)",
 };
 const CHOICES = { motion: ["linear", "rotary"], friction: ["force", "torque", "current", "percent", "voltage", "none"] };
@@ -60,10 +62,14 @@ export class ImportForm {
     else if (point.kind === "value") this.send({ rows, rig: { [point.place]: value } });
     else if (point.kind === "rate") this.send({ rows, rig: {}, rate_hz: value });
     else if (point.kind === "joint") this.again(value);
+    else if (value === "bearing") this.machine(value);
+    else if (point.kind === "values") this.send({ rows, rig: value });
     else if (point.kind === "formula") this.send({ rows: [...rows, { key: point.key, expression: point.expression.replace("?", value) }], rig: {} });
     else if (value === "none") this.send({ rows, rig: { "drive.friction": "none", [`drive.${this.rotary() ? "inertia_kg_m2" : "mass_kg"}`]: "?" } });
     else { const [key, ...name] = value.split(" "); this.send({ rows: assign(key, name.join(" ")), rig: {} }); }
   }
+
+  machine(kind) { this.send({ rows: this.rows(), rig: { machine: kind } }); }
 
   rotary() { return this.form.rig.drive?.motion === "rotary"; }
 
@@ -81,7 +87,7 @@ export class ImportForm {
         h("button", { class: "main", "data-key": "import-diagnose", disabled: !ready, onclick: () => this.keep(true) }, "Import and diagnose"),
         h("button", { "data-key": "import", disabled: !ready, onclick: () => this.keep(false) }, "Import only"),
         h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close"),
-        h("label", {}, "as folder ", into)),
+        h("label", {}, "as folder ", into), this.kind()),
       this.plots,
       this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", { class: "columns" },
         h("thead", {}, h("tr", {}, ["column", "course", "first values", "quantity", "unit", "negate", "read as"].map((w) => h("th", {}, w)))),
@@ -114,7 +120,9 @@ export class ImportForm {
     return h("section", { class: `card${point.kind === "joint" ? "" : " open"}`, "aria-label": point.title, "data-point": point.kind },
       h("div", { class: "top" }, h("h3", {}, point.title), column ? course(column.shape) : null),
       column ? h("p", { class: "faint" }, `first values: ${column.first.join(", ")}`) : null,
-      point.choices.length === 0 ? h("label", {}, point.example ? `such as ${point.example} ` : "number ", field("value", point.title))
+      point.kind === "values" ? this.values(point)
+        : point.choices.length === 0 || point.kind === "formula" ? h("p", {}, h("label", {}, point.example ? `such as ${point.example} ` : `${point.number ?? "number"} `, field("value", point.title))) : null,
+      point.choices.length === 0 ? null
         : many ? h("select", { "aria-label": point.title, "data-key": name, onchange: (e) => set(e.target.value) },
           h("option", { value: "" }, "choose …"),
           point.choices.map(([value, words]) => h("option", { value, selected: value === point.chosen }, words)))
@@ -123,6 +131,15 @@ export class ImportForm {
       point.key === "time_s" && point.kind === "column" ? h("p", {}, h("label", {}, "or constant rate, Hz ",
         h("input", { class: "short", type: "number", "aria-label": "sampling rate, Hz", "data-key": "answer-rate",
           onchange: (e) => this.reply({ kind: "rate" }, Number(e.target.value)) }))) : null);
+  }
+
+  // Several values of the machine that are sent at once.
+  values(point) {
+    const fields = point.fields.map(({ place, title, example }) => [place, title, h("input", { class: "short", placeholder: `e.g. ${example}`, "aria-label": title, "data-key": `answer-${place}` })]);
+    const all = () => Object.fromEntries(fields.map(([place, , input]) => [place, input.value.trim()]).filter(([, value]) => value));
+    return h("form", { onsubmit: (e) => { e.preventDefault(); this.reply(point, all()); } },
+      fields.map(([, title, input]) => h("p", {}, h("label", {}, title, h("br"), input))),
+      h("button", { "data-key": "answer-values" }, "Use these values"));
   }
 
   confirmation(point) {
@@ -180,6 +197,13 @@ export class ImportForm {
     const names = this.found.columns.map((c) => c.name);
     const others = this.form.rows.filter((row) => row.column === undefined || !names.includes(row.column));
     return others.length ? h("ul", { class: "plain" }, others.map((row) => h("li", {}, `${row.key} = ${row.expression}`, ` (${this.read(row.key)})`))) : null;
+  }
+
+  // The kind of machine; columns alone do not distinguish a bearing from a drive.
+  kind() {
+    const kind = this.form.rig.bearing ? "bearing" : this.form.rig.drive ? "drive" : null;
+    return kind && h("label", {}, "recorded on ", h("select", { "data-key": "machine", onchange: (e) => this.machine(e.target.value) },
+      [["drive", "a drive, slide or joint"], ["bearing", "a journal bearing"]].map(([value, words]) => h("option", { value, selected: value === kind }, words))));
   }
 
   rig() {

@@ -8,8 +8,10 @@ from jbf.errors import InputError
 from jbf.models.catalogue import effects, find_effect, laws, reason_not_applicable
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import AUTO
+from jbf.records.quantities import BEARING
 from jbf.records.rig import Rig
 from jbf.reporting.catalogue_text import effect_page
+from jbf.reporting.effect_words import summary_of
 
 
 def first_law(rig: Rig) -> str:
@@ -45,12 +47,16 @@ def laws_for(rig: Rig | None) -> list[dict[str, Any]]:
     return [*usable, *unusable]
 
 
-def effects_for(law: str) -> list[dict[str, Any]]:
-    """Effects with their summaries, and the reason why the law excludes them, or None."""
+def effects_for(law: str, rig: Rig | None) -> list[dict[str, Any]]:
+    """Effects with their summaries, and the reason why the law excludes them, or None.
+
+    The summaries are worded for the kind of machine.
+    """
+    quantities = BEARING if rig is None else rig.quantities
     return [
         {
             "name": page.name,
-            "summary": page.summary,
+            "summary": summary_of(page, quantities),
             "refused": reason_not_applicable(page, law),
         }
         for page in effects().values()

@@ -9,6 +9,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from jbf.errors import InputError, quoted
+from jbf.importing.formats.registry import FORMATS
+from jbf.importing.ledger import NAME as LEDGER
 from jbf.records.toml_file import read_toml
 
 MOST_FILES = 2000
@@ -17,9 +19,10 @@ DEPTH = 4
 """Maximum depth of nested folders."""
 _LARGEST_TOML = 1 << 20
 _RIG = {"bearing", "lubricant", "load", "drive"}
-_RECORDINGS = {".mat", ".parquet", ".pq", ".tdms", ".mf4", ".mdf", ".mcap", ".bag", ".h5", ".hdf5",
-               ".xlsx", ".txt", ".tsv", ".dat", ".log", ".wpilog"}  # fmt: skip
+_RECORDINGS = {suffix for kind in FORMATS for suffix in kind.suffixes} - {".csv"}
 _UPLOADS = _RECORDINGS | {".csv", ".toml", ".zip"}
+_OWN = {LEDGER, "workbench.json"}
+"""Files that the program writes itself; they are not recordings."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +119,7 @@ class Folder:
                 names_by_kind["csv"].append(name)
             elif suffix == ".zip":
                 names_by_kind["sessions"].append(name)
-            elif suffix in _RECORDINGS:
+            elif suffix in _RECORDINGS and path.name not in _OWN:
                 names_by_kind["other"].append(name)
         names_by_kind["campaigns"] = [
             {"rig": rig, "runs": runs}

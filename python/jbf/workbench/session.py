@@ -345,7 +345,9 @@ class Session:
                 "law": self.law,
                 "laws": laws_for(None if bench is None else bench.rig),
                 "fit_law": self._fit_law(),
-                "effects": effects_for(self._law_of_next_fit()),
+                "effects": effects_for(
+                    self._law_of_next_fit(), None if bench is None else bench.rig
+                ),
                 "job": None if job is None else job.to_dict(),
                 "message": self.message,
                 **self.models.to_dict(None if bench is None else bench.used()),

@@ -114,13 +114,23 @@ def test_candidates_have_a_sentence_a_shape_and_a_description(
     page, _ = opened
     enter(page, 3)
     card = page.locator("[data-effect=inertia]")
-    assert "Inertial force" in card.inner_text()
+    # The sentence is worded for a drive.
+    assert "Mass that the drive accelerates" in card.inner_text()
     assert "× the noise" in card.inner_text()
     assert card.locator("svg polyline").count() == 2
     page.click("[data-key=about-inertia]")
     assert "equation" in page.inner_text("dialog")
     page.click("[data-key=close-about]")
     page.wait_for_selector("dialog", state="detached")
+
+
+def test_page_and_effects_link_to_their_documentation(opened: tuple[Page, Messages]) -> None:
+    page, messages = opened
+    enter(page, 3)
+    for key, file in (("docs", "workbench.md"), ("docs-inertia", "effects/inertia.md")):
+        address = page.get_attribute(f"[data-key={key}]", "href")
+        assert address == f"https://github.com/jbf-friction/jbf/blob/main/docs/{file}"
+    assert messages.outside == []
 
 
 @pytest.mark.parametrize("width", [390, pytest.param(800, marks=pytest.mark.extended)])

@@ -1,5 +1,6 @@
 """Recordings in the workbench: guessed map, preview with a map or a form, import."""
 
+import json
 import shlex
 from pathlib import Path
 from typing import Any
@@ -255,6 +256,15 @@ def test_sample_opens_with_its_runs_and_is_copied_once(folder: Path, name: str) 
     assert len([path for path in folder.iterdir() if path.is_dir()]) == 1
     assert client.post("/api/sample", json={"name": "other"}).status_code == 422
     session.close()
+
+
+def test_recording_in_json_is_uploaded_and_listed_but_not_the_ledger(client: TestClient) -> None:
+    rows = [{"time_s": 0.01 * k, "position_m": 0.001 * k, "friction_n": 1.0} for k in range(400)]
+    answer = client.post("/api/upload?name=log.json", content=json.dumps(rows).encode())
+    assert answer.status_code == 200
+    assert client.post("/api/look", json={"file": "log.json"}).json()["open"] == []
+    assert client.post("/api/import", json=request_of(client)).status_code == 200
+    assert client.get("/api/files").json()["other"] == ["log.json"]
 
 
 GEOMETRY = {

@@ -1,5 +1,5 @@
 // The verdict in one number and one sentence, and the next step with the button that does it.
-import { h, put, times } from "./dom.js";
+import { h, number as value, put, times } from "./dom.js";
 
 const MARKS = { good: "✓", warn: "?", bad: "!" };
 
@@ -9,8 +9,9 @@ export function showBanner(page, place) {
   const step = nextStep(page), number = node?.banner.times_noise ?? null;
   place.dataset.kind = node?.banner.kind ?? "none";
   put(place,
-    number === null ? null : h("div", { class: "number", "data-key": "times-noise" }, `${MARKS[node.banner.kind]} ${times(number)}`,
-      h("small", {}, "the noise"), h("small", {}, node.banner.error === "fit" ? "error of the fit" : "held-out error")),
+    !node ? null : h("div", { class: "number", "data-key": "times-noise" },
+      `${MARKS[node.banner.kind]} ${number === null ? `${value(node.held_out_rms ?? node.rms)} ${page.units.force}` : times(number)}`,
+      h("small", {}, number === null ? "noise unknown" : "the noise"), h("small", {}, node.banner.error === "fit" ? "error of the fit" : "held-out error")),
     h("div", { class: "words" }, h("b", {}, node ? node.banner.words : headline(state.job)),
       node?.banner.sizes.length ? h("p", { "data-key": "sizes" }, node.banner.sizes.join(" ")) : null,
       step ? h("p", {}, `Next: ${step.words}`) : null),

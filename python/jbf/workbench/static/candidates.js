@@ -1,6 +1,6 @@
 // Candidates by gain, one card each: shape, sentence, gain in times the noise, held-out agreement.
 import { get } from "./api.js";
-import { h, number, put, s, times } from "./dom.js";
+import { documentation, h, number, put, s, times } from "./dom.js";
 
 const MOST = 6;
 const OUTCOME = {
@@ -37,7 +37,8 @@ export function showCandidates(page, place) {
         h("button", { class: t?.outcome === "added" ? "main" : "", "data-key": `add-${name}`, disabled: busy, "aria-label": `add ${name}`,
           onclick: () => page.do("fit", { effects: [...(node?.effects ?? []), name], parent }) }, "Add"),
         h("button", { "data-key": `sketch-${name}`, disabled: !node, "aria-pressed": String(page.effect === name), "aria-label": `show ${name}`, onclick: () => page.look({ effect: name }) }, "Show"),
-        h("button", { class: "quiet", "data-key": `about-${name}`, "aria-label": `about ${name}`, onclick: () => about(page, name) }, "Equation and limits")));
+        h("button", { class: "quiet", "data-key": `about-${name}`, "aria-label": `about ${name}`, onclick: () => about(page, name) }, "Equation and limits"),
+        documentation(`effects/${name}.md`, "Documentation", { "data-key": `docs-${name}`, "aria-label": `documentation of ${name}` })));
   };
   const cards = (items) => h("div", { class: "cards" }, items);
   const first = !node ? h("p", { class: "faint" }, "Fit the base law first; then the candidates are ranked here.")

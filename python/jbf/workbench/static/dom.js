@@ -43,5 +43,14 @@ export function key(name, words) {
 // A ratio to the noise, as in "12 ×".
 export const times = (ratio) => (ratio === null || ratio === undefined ? "–" : `${ratio < 9.95 ? ratio.toFixed(1) : Math.round(ratio)} ×`);
 
+// Scale of bars of errors: multiples of the noise, or the unit of the rig if the noise is unknown.
+export const scale = (noise, unit) => (noise > 0 ? { one: noise, words: times, title: "times the noise" }
+  : { one: 1, words: (v) => `${number(v)} ${unit}`, title: `${unit}, noise unknown` });
+
 // Start of a label behind the end of a bar, not across a vertical line.
 export const behind = (end, line) => (end < line && end + 40 > line ? line : end) + 5;
+
+// A link to the documentation; it is opened only by a click.
+const DOCS = "https://github.com/jbf-friction/jbf/blob/main/docs";
+export const documentation = (page, words, attributes = {}) =>
+  h("a", { href: `${DOCS}/${page}`, target: "_blank", rel: "noopener noreferrer", ...attributes }, words);

@@ -23,7 +23,7 @@ export class KeepSection {
     const { page } = this, node = page.model;
     const there = (what) => (["session", "bundle", "trimmed"].includes(what) ? page.state.runs.length > 0
       : node && (what !== "next_run" || node.diagnosis?.next_run));
-    put(this.list, h("div", { class: "scroll" }, h("table", {}, h("tbody", {}, THINGS.map(([what, title, why, file]) => h("tr", {},
+    put(this.list, h("div", { class: "scroll" }, h("table", { class: "things" }, h("tbody", {}, THINGS.map(([what, title, why, file]) => h("tr", {},
       h("td", {}, what === "bundle" ? null : h("button", { "data-key": `keep-${what}`, "aria-label": `save ${title}`, disabled: !there(what), onclick: () => this.keep(what) }, "Save in the folder")),
       h("td", {}, file ? h("button", { "data-key": `get-${what}`, "aria-label": `download ${title}`, disabled: !there(what), onclick: () => this.get(what, file) }, "Download") : null),
       h("td", {}, title), h("td", { class: "faint" }, why)))))));

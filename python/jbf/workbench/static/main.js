@@ -1,7 +1,7 @@
 // The page: its sections, the current selection, and news from the server.
 import { cancelRequests, download, follow, get, onBusy, post } from "./api.js";
 import { showBanner } from "./banner.js";
-import { h, put } from "./dom.js";
+import { documentation, h, put } from "./dom.js";
 import { DataSection } from "./data.js";
 import { SeeSection } from "./see.js";
 import { LearnSection } from "./learn.js";
@@ -22,6 +22,7 @@ class Page {
     this.importing = false;
     document.addEventListener("keydown", (event) => this.key(event));
     onBusy((busy) => { if (this.busy !== busy) { this.busy = busy; if (this.state) this.head(); } });
+    place("theme").before(documentation("workbench.md", "Documentation", { "data-key": "docs" }));
     startTheme(place("theme"), () => { if (this.section) this.enter(this.name); });
     if (innerWidth <= 1000) for (const id of ["runs-part", "models-part"]) place(id).open = false;
   }

@@ -52,5 +52,5 @@ export function showModels(page, place) {
     h("button", { "data-key": "undo", disabled: current === null, title: "return to the parent model (key z)", onclick: () => page.do("undo") }, "Undo"),
     h("button", { "data-key": "redo", disabled: !page.state.can_redo, title: "return to the model that was undone (key y)", onclick: () => page.do("redo") }, "Redo"),
     h("button", { "data-key": "records", disabled: current === null, onclick: () => page.do("show", { model: null }) }, "Data only")), rows,
-  compared.length && page.name !== "Explore" ? h("button", { class: "main", "data-key": "plot-compared", onclick: () => page.enter("Explore") }, "Plot the compared models") : null);
+  compared.length && page.name !== "Explore" ? h("div", { class: "row" }, h("button", { class: "main", "data-key": "plot-compared", onclick: () => page.enter("Explore") }, "Plot the compared models")) : null);
 }

@@ -13,7 +13,7 @@ export function showBanner(page, place) {
       `${MARKS[node.banner.kind]} ${number === null ? `${value(node.held_out_rms ?? node.rms)} ${page.units.force}` : times(number)}`,
       h("small", {}, number === null ? "noise unknown" : "the noise"), h("small", {}, node.banner.error === "fit" ? "error of the fit" : "held-out error")),
     h("div", { class: "words" }, h("b", {}, node ? node.banner.words : headline(state.job)),
-      node?.banner.sizes.length ? h("p", { "data-key": "sizes" }, node.banner.sizes.join(" ")) : null,
+      node?.banner.sizes.map((words) => h("p", {}, words)),
       step ? h("p", {}, `Next: ${step.words}`) : null),
     step?.buttons ? h("div", { class: "row tight" }, step.buttons.map(([key, words, act]) =>
       h("button", { class: "main", "data-key": `next-${key}`, onclick: act }, words))) : null);
@@ -34,5 +34,5 @@ function nextStep(page) {
   if (!node.diagnosis && best) return { words: `add ${best.effect}, the effect with the largest gain.`,
     buttons: [["add", `Add ${best.effect}`, () => { page.enter("Model"); page.do("fit", { effects: [...node.effects, best.effect], parent: node.id }); }], ...explore] };
   if (!node.diagnosis && node.banner.kind !== "good") return { words: "see where the model fails, or diagnose automatically.", buttons: [diagnose, ...explore] };
-  return { words: "see where the model fails, or export it.", buttons: [...explore, ...(here === "Export" ? [] : [go("Export", "4 Export")])] };
+  return { words: node.banner.kind === "good" ? "export the model, or see how it fits the runs." : "see where the model fails, or export it.", buttons: [...explore, ...(here === "Export" ? [] : [go("Export", "4 Export")])] };
 }

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from jbf.comparison.comparison import Comparison
-from jbf.comparison.parts import added_by
 from jbf.models.catalogue import Effect, find_effect
 from jbf.models.model import Model
 from jbf.models.parameter_units import units_of
 from jbf.records.quantities import Quantities
 from jbf.reporting.paragraphs import hanging
-from jbf.reporting.words import against_noise, number, value_and_error
+from jbf.reporting.words import number, value_and_error
 
 
 def summary_of(effect: Effect, terms: Quantities) -> str:
@@ -83,20 +81,3 @@ def known_mass(model: Model, effect: str) -> str:
     value, error = value_and_error(model.parameters[name])
     estimate = f"{value} +/- {error}" if error else value
     return f"; {estimate} {unit}, rig file: {number(rig_value, 4)}"
-
-
-def size_words(comparison: Comparison, effect: str) -> str:
-    """State the RMS contribution of an effect to a model, as in `cogging contributes 0.8 N RMS`.
-
-    It is given in the unit of the rig, as a multiple of the noise, and as a share of the recorded
-    force or torque. Only included samples count.
-    """
-    samples, quantities = comparison.samples, comparison.model.rig.quantities
-    rms = samples.rms(added_by(comparison, (effect,)))
-    recorded_rms = samples.rms([p.friction for p in comparison.campaign.prepared])
-    words = f"{effect} contributes {number(rms)} {quantities.force} RMS"
-    if comparison.noise_rms > 0.0:
-        words += f", {against_noise(rms, comparison.noise_rms, quantities.force)}"
-    if recorded_rms > 0.0:
-        words += f", {number(100.0 * rms / recorded_rms, 2)} % of the recorded {quantities.noun}"
-    return words

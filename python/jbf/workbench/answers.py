@@ -31,7 +31,7 @@ from jbf.models.catalogue import (
 from jbf.models.model import Model
 from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
-from jbf.reporting.effect_words import size_words
+from jbf.reporting.effect_size import size_words
 from jbf.reporting.tables import power_rows
 from jbf.reporting.words import headline_and_rest, verdict_sentence
 from jbf.workbench.marks import failure_marks

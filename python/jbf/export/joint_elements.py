@@ -143,7 +143,8 @@ def fit_form(
     """Fit values of a form to the force of a reference, by least squares; none becomes negative.
 
     Positive values are fitted by their logarithm; the damping and a value that starts at zero are
-    fitted linearly.
+    fitted linearly. A static level stays below the largest dry force: runs with few samples near
+    the Stribeck velocity do not determine a larger one.
 
     Returns
     -------
@@ -174,6 +175,12 @@ def fit_form(
     begin = [form.value(name) / unit[name] if name in linear else 0.0 for name in free]
     bounds = [(0.0, np.inf) if name in linear else (-MOST_CHANGE, MOST_CHANGE) for name in free]
     lower, upper = np.array(bounds).T
+    viscous = [form.damping[0] * v for v in reference.velocity]
+    dry = (np.abs(a - b) for a, b in zip(reference.force, viscous, strict=True))
+    largest = max(float(np.max(force)) for force in dry)
+    for i, name in enumerate(free):
+        if name == "bristle.F_s" and name not in linear:
+            upper[i] = max(np.log(largest / form.value(name)), 1e-6)
     start = np.clip(begin, lower + 1e-9, None)
     solution = least_squares(
         residual,

@@ -236,3 +236,13 @@ def test_quadratic_drag_is_kept_where_a_dry_level_replaces_the_bristle() -> None
     assert "lugre" not in exported.text
     assert law.values["damping_2"] == 0.7
     assert statuses(exported)["quadratic_drag"] == "approximate"
+
+
+@pytest.mark.parametrize("v_s", [1e-3, 0.01])
+def test_static_level_of_a_fitted_bristle_is_that_of_the_runs(v_s: float) -> None:
+    values = {"F_c": 10.0, "F_s_inf": 3.0, "F_v": 10.0, "v_s": v_s}
+    model = jbf.Model(JOINT, "seven_parameter", parameters=values)
+    ledger = export.to(model, "mjcf", joint_runs(step_s=0.02)).ledger
+    static = ledger.term("seven_parameter").values.get("lugre_static", 0.0)
+    assert static < 1.05 * (10.0 + 3.0)
+    assert ledger.share < 0.02

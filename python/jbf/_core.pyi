@@ -38,6 +38,8 @@ __all__ = [
 
 __version__: str
 FASTEST_FILM_1_S: float
+LUGRE_LONGEST_STEP_S: float
+LUGRE_STEPS_PER_SAMPLE: float
 
 @type_check_only
 class ParameterPage(TypedDict):

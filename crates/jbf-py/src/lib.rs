@@ -19,6 +19,8 @@ mod recorded_motion;
 mod share;
 mod trajectory;
 
+use jbf_core::law::lugre::{self, LuGre};
+use jbf_core::law::Law;
 use pyo3::prelude::*;
 
 /// Adds every class and function to the extension module `jbf._core`.
@@ -28,6 +30,8 @@ use pyo3::prelude::*;
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;
+    m.add("LUGRE_LONGEST_STEP_S", lugre::LONGEST_STEP_S)?;
+    m.add("LUGRE_STEPS_PER_SAMPLE", LuGre::<f64>::ENOUGH_STEPS)?;
     m.add_class::<motion::Motion>()?;
     m.add_class::<chain::Chain>()?;
     m.add_class::<batch::BatchRig>()?;

@@ -19,9 +19,10 @@ Targets without the core (`to`, `TARGETS`), each with a ledger of what it does n
 - `reference`: force of a model along its runs, without weight, inertia and sensor.
 - `steady`: friction against speed, and its approximation by few points.
 - `joint_elements`, `joint_form`: elements of a simulated joint, and a model in terms of them.
-- `c_parts`: C fragments of laws and effects.
-- `compiled`, `mujoco_run`: exported forms that run along a reference.
-- `table`, `plain_c`, `fmu`, `mjcf`, `description`: the targets.
+- `equations`, `step_equations`: laws and effects, and the step, independent of a language.
+- `program`, `syntax`, `c_syntax`: a model composed of them, and its text in a language.
+- `compiled`, `mujoco_run`, `rumoca_run`: exported forms that run along a reference.
+- `table`, `plain_c`, `structured_text`, `fmu`, `modelica`, `mjcf`, `description`: the targets.
 
 May import: `jbf.models`, `jbf.estimation`; nothing from diagnosis or reporting.
 """

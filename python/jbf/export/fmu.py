@@ -15,8 +15,6 @@ from jbf.export.reference import Reference
 from jbf.export.target import MAIN, STEM, Settings, Target, Written, xml_text
 from jbf.records.quantities import Quantities
 
-INPUTS = ("velocity", "acceleration", "position", "weight_offset", "load", "temperature")
-"""Inputs of an FMU, as far as the model uses them."""
 XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
 DEFAULT_C = 20.0
 """Temperature before the first input, C."""
@@ -67,7 +65,7 @@ def _archive(
     reference: Reference, settings: Settings, version: int, made: PlainC, identifier: str
 ) -> dict[str, str]:
     """Texts of the archive by their paths."""
-    inputs = [n for n in INPUTS if n == "velocity" or f"motion->{n}" in made.source_of_force]
+    inputs = made.program.inputs
     variables = {"force": _unit(reference, "force")} | {n: _unit(reference, n) for n in inputs}
     template = (
         package_files("jbf.export").joinpath(f"fmi{version}.c.txt").read_text(encoding="utf-8")

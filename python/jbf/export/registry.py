@@ -9,8 +9,10 @@ from jbf.export.description import ISAAC, SDF, URDF
 from jbf.export.fmu import FMU2, FMU3
 from jbf.export.ledger import Ledger
 from jbf.export.mjcf import MJCF
+from jbf.export.modelica import MODELICA
 from jbf.export.plain_c import PLAIN_C
 from jbf.export.reference import Reference
+from jbf.export.structured_text import STRUCTURED_TEXT
 from jbf.export.table import TABLE
 from jbf.export.target import Exported, Settings, Target
 from jbf.models.model import Model, the_model
@@ -18,7 +20,8 @@ from jbf.records.arguments import one_of
 from jbf.records.run import Run
 
 TARGETS: dict[str, Target] = {
-    target.name: target for target in (TABLE, PLAIN_C, FMU2, FMU3, MJCF, URDF, SDF, ISAAC)
+    target.name: target
+    for target in (TABLE, PLAIN_C, STRUCTURED_TEXT, FMU2, FMU3, MODELICA, MJCF, URDF, SDF, ISAAC)
 }
 """Targets by name."""
 DEFAULT = Settings()

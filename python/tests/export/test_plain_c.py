@@ -4,21 +4,28 @@ import os
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Literal
 
 import jbf
 import numpy as np
 import pytest
+from equation_models import (
+    EFFECTS,
+    model_of,
+    model_with,
+    models_with_many_effects,
+    runs_with_all_columns,
+)
 from jbf import export
-from jbf.export.c_parts import CONTACT, LAWS, OTHER, TRANSMISSION
-from jbf.models.catalogue import built_in, built_in_laws, reason_not_applicable
+from jbf.export.equations import LAWS
 from joint_runs import JOINT, joint_runs
 
-BASE = {"F_c": 5.0, "F_s": 8.0, "v_s": 0.1, "F_v": 2.0, "sigma_0": 2e3, "sigma_1": 3.0, "v_d": 0.3}
-EFFECTS = ("presliding", *CONTACT, *OTHER, *TRANSMISSION)
 ULPS = 2
 ALL_BITS = ("coulomb", "maxwell_slip", "elasto_plastic")
 """Laws whose force is that of the core to the last bit: they use no function of math.h."""
 
+STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off")
+CORTEX_M4F = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 MAIN = """
 #include <stdio.h>
 #include "model.h"
@@ -51,32 +58,13 @@ def compiler(name: str = "cc") -> str:
     return path
 
 
-def model_of(law: str, *effects: str) -> jbf.Model:
-    names = [e for name in effects for e in (name, built_in()[name].further_of) if e]
-    values = {p.name: BASE.get(p.name, p.starts[0]) for p in built_in_laws()[law].parameters}
-    for name in names:
-        values |= {f"{name}.{p.name}": p.starts[0] for p in built_in()[name].parameters}
-    return jbf.Model(JOINT, law, names, values)
-
-
-def runs_with_all_columns(step_s: float) -> list[jbf.Run]:
-    """Runs with a stop and a rest, a load and a temperature."""
-    runs = []
-    for run in joint_runs(step_s=step_s):
-        t = run.time_s
-        velocity = run.velocity * ((t < 4.0) | (t > 4.5))
-        path = np.concatenate([[0.0], np.cumsum(0.5 * step_s * (velocity[1:] + velocity[:-1]))])
-        columns = {"load_n": 20.0 + 5.0 * np.sin(t), "temperature_c": 30.0 + t}
-        runs.append(jbf.Run.from_arrays(t, velocity, angle_rad=path, name=run.name, **columns))
-    return runs
-
-
-def run_program(exported: export.Exported, folder: Path, record: export.Record) -> np.ndarray:
+def run_program(
+    exported: export.Exported, folder: Path, record: export.Record, name: str = "cc"
+) -> np.ndarray:
     """Compile an export with a program of its own and run it along a motion."""
     exported.save(folder / "model.c")
     (folder / "main.c").write_text(MAIN)
-    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off", "-O1"]
-    build = [compiler(), *strict, "model.c", "main.c", "-lm", "-o", "program"]
+    build = [compiler(name), *STRICT, "-O1", "model.c", "main.c", "-lm", "-o", "program"]
     done = subprocess.run(build, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     zero = np.zeros(len(record.time_s))
@@ -118,10 +106,7 @@ def test_compiled_law_gives_the_numbers_of_the_core(
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_compiled_effect_gives_the_numbers_of_the_core(effect: str) -> None:
     compiler()
-    laws = ("coulomb", "lugre", "dahl")
-    law = next(law for law in laws if reason_not_applicable(built_in()[effect], law) is None)
-    others = ("gravity", "inertia") if effect == "torque_proportional" else ()
-    model = model_of(law, effect, *others)
+    model = model_with(effect)
     ledger = export.to(model, "c", runs_with_all_columns(0.01)).ledger
     assert ledger.term(effect).status == "exact"
     assert "compiled" in ledger.evaluated_by
@@ -137,6 +122,31 @@ def test_compiled_model_with_many_effects_gives_the_numbers_of_the_core(tmp_path
     force = run_program(exported, tmp_path, export.record(model, run))
     expected = model.predict(run)
     assert np.max(np.abs(force - expected)) <= 2 * ULPS * np.spacing(np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_clang_gives_the_numbers_of_the_core(law: str, tmp_path: Path) -> None:
+    compiler("clang")
+    model, run = model_of(law), runs_with_all_columns(0.005)[0]
+    exported = export.to(model, "c", [run])
+    force = run_program(exported, tmp_path, export.record(model, run), "clang")
+    expected = model.predict(run)
+    assert np.max(np.abs(force - expected)) <= ULPS * np.spacing(np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("precision", ["double", "float"])
+@pytest.mark.parametrize("model", models_with_many_effects(), ids=lambda model: model.law)
+def test_code_compiles_for_a_cortex_m4f_without_warnings(
+    model: jbf.Model, precision: Literal["double", "float"], tmp_path: Path
+) -> None:
+    command = [compiler("arm-none-eabi-gcc"), *CORTEX_M4F, *STRICT, "-Wconversion", "-O2", "-c"]
+    if precision == "float":
+        # A promotion would call the double-precision library of a single-precision processor.
+        command += ["-Wdouble-promotion"]
+    runs, settings = runs_with_all_columns(0.02), export.Settings(precision=precision)
+    export.to(model, "c", runs, settings=settings).save(tmp_path / "model.c")
+    done = subprocess.run([*command, "model.c"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("law", ["stribeck", "lugre", "maxwell_slip"])

@@ -42,7 +42,7 @@ use crate::real::Real;
 
 /// Longest step with which the friction level, a nonlinear function of the speed, is sufficiently
 /// accurate if it is linear in each step, s.
-const LONGEST_STEP_S: f64 = 0.002;
+pub const LONGEST_STEP_S: f64 = 0.002;
 
 /// LuGre law with Stribeck curve and viscous friction.
 #[derive(Clone, Copy, Debug)]

@@ -23,6 +23,8 @@ Every entry is the status in the ledger of an export of a model with that law or
 starting values of the catalogue. The ledger of your export can differ where a term depends on its
 values. It lists every term with its values, and the error is computed along your runs.
 
+[Measured losses](target_losses.md) has the error of each law in each target.
+
 *(Written by `docs/targets.py`.)*
 
 | status | meaning |

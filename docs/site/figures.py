@@ -34,6 +34,7 @@ SCRIPTS = {
     "docs/site/commands.py": ("reference/commands.md",),
     "docs/policy.py": ("reference/policy.md",),
     "docs/targets.py": ("reference/targets.md",),
+    "docs/target_losses.py": ("reference/target_losses.md",),
 }
 """Names of the files that each script writes, relative to docs."""
 NOT_ANEW = {

@@ -12,6 +12,8 @@ _Array32: TypeAlias = npt.NDArray[np.float32]
 
 __all__ = [
     "FASTEST_FILM_1_S",
+    "LUGRE_LONGEST_STEP_S",
+    "LUGRE_STEPS_PER_SAMPLE",
     "BatchRig",
     "Chain",
     "Motion",

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_effects_from, add_json, command
 from jbf.cli.commands import COMMANDS
 from jbf.errors import InputError
-from jbf.export import TARGETS, Settings, c, rust, to
+from jbf.export import TARGETS, Compensator, Settings, c, rust, to
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,7 @@ class ExportOptions:
     json: str | None
     max_loss: float | None
     effects_from: tuple[str, ...]
+    compensator_file: str | None
     settings: Settings
 
 
@@ -88,6 +89,14 @@ def add(commands: Commands) -> None:
         default=default.precision,
         help=f"c, FMU: floating-point type of the code; default {default.precision}",
     )
+    parser.set_defaults(compensator=None)
+    parser.add_argument(
+        "--compensator",
+        dest="compensator_file",
+        metavar="FILE.toml",
+        help="c: add the compensator whose model an observer corrects, with the settings in this "
+        "file",
+    )
     parser.add_argument(
         "--mujoco",
         metavar="VERSION",
@@ -101,9 +110,10 @@ def run(options: ExportOptions) -> int:
     """Run `jbf export` and return its exit code."""
     if options.to is not None:
         return _to_target(options, options.to)
-    for name in ("runs", "out", "json", "max_loss"):
+    for name in ("runs", "out", "json", "max_loss", "compensator_file"):
         if getattr(options, name) not in (None, ()):
-            argument = "RUN" if name == "runs" else "--" + name.replace("_", "-")
+            argument = "--" + name.removesuffix("_file").replace("_", "-")
+            argument = "RUN" if name == "runs" else argument
             raise InputError(problem=f"{argument} is used with --to only", remedy="add --to TARGET")
     targets = {"--rust": options.rust, "--c": options.c}
     if not any(targets.values()):
@@ -137,6 +147,13 @@ def _to_target(options: ExportOptions, target: str) -> int:
             problem="no run is given, and the loss of an export is computed along runs",
             remedy=f"name the runs of the model: jbf export {options.model} RUN... --to {target}",
         )
+    settings = options.settings
+    if options.compensator_file is not None:
+        if target != "c":
+            raise InputError(
+                problem=f"the target {target} has no compensator", remedy="export with --to c"
+            )
+        settings = replace(settings, compensator=Compensator.load(options.compensator_file))
     targets = {"--out": options.out, "--json": options.json}
     outputs.check(targets, outputs.inputs_in(options.model, options.runs, options.effects_from))
     model = inputs.model(options.model)
@@ -145,7 +162,7 @@ def _to_target(options: ExportOptions, target: str) -> int:
         model,
         target,
         runs,
-        settings=options.settings,
+        settings=settings,
         max_loss=options.max_loss,
     )
     texts: dict[str, str | bytes] = {}

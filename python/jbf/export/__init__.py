@@ -22,12 +22,14 @@ Targets without the core (`to`, `TARGETS`), each with a ledger of what it does n
 - `equations`, `step_equations`: laws and effects, and the step, independent of a language.
 - `program`, `syntax`, `c_syntax`: a model composed of them, and its text in a language.
 - `compiled`, `mujoco_run`, `rumoca_run`: exported forms that run along a reference.
+- `compensator`: the observed compensator as equations, for the target `c`.
 - `table`, `plain_c`, `structured_text`, `fmu`, `modelica`, `mjcf`, `description`: the targets.
 
 May import: `jbf.models`, `jbf.estimation`; nothing from diagnosis or reporting.
 """
 
 from jbf.export.c import c
+from jbf.export.compensator import Compensator
 from jbf.export.ledger import Ledger, RunLoss, Term
 from jbf.export.record import Record, record
 from jbf.export.registry import TARGETS, to
@@ -36,6 +38,7 @@ from jbf.export.target import Exported, Settings
 
 __all__ = [
     "TARGETS",
+    "Compensator",
     "Exported",
     "Ledger",
     "Record",

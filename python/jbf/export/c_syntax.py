@@ -38,6 +38,10 @@ HELPERS = {"sum": SUM} | {
 """Functions that math.h lacks, or has with another treatment of numbers that are not finite."""
 
 
+STRUCTURES = ("model", "motion")
+"""Fields that are structures."""
+
+
 class C(Syntax):
     """Syntax of C99."""
 
@@ -89,6 +93,8 @@ class C(Syntax):
 
     def _argument(self, node: ast.expr) -> str:
         text = self.expression(node)
+        if isinstance(node, ast.Attribute):
+            return f"&{text}" if node.attr in STRUCTURES else text
         is_value = isinstance(node, ast.Name) and node.id in self.structures
         return f"&{text}" if is_value else text
 

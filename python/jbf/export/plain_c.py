@@ -14,6 +14,7 @@ import numpy.typing as npt
 from jbf import _core
 from jbf.errors import InputError
 from jbf.export.c_syntax import C
+from jbf.export.compensator import EQUATIONS, ROOTS
 from jbf.export.compiled import NoCompiler, run_c
 from jbf.export.equations import LAWS
 from jbf.export.ledger import Term
@@ -23,8 +24,8 @@ from jbf.export.target import MAIN, Precision, Settings, Target, Written
 from jbf.models.model import Model
 
 Array = npt.NDArray[np.float64]
-PUBLIC = ("start", "step")
-"""Functions that the header declares."""
+FUNCTIONS = ("start", "step")
+"""Functions of every model that the header declares."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ def plain_c(reference: Reference, settings: Settings) -> PlainC:
     model = reference.machine
     check_equations(model, settings, "C")
     prefix = f"{settings.joint}_friction"
-    made = program(model)
+    made = _program(model, settings)
     source = c_source(made, prefix, settings.precision)
     header = _header(model, made, prefix, settings.precision)
     force, evaluated_by = _run(reference, source, header, prefix, settings.precision)
@@ -68,6 +69,19 @@ def plain_c(reference: Reference, settings: Settings) -> PlainC:
         "errors in laws with exp or pow"
     )
     return PlainC(prefix, source, header, made, terms, force, evaluated_by, (note,))
+
+
+def _program(model: Model, settings: Settings) -> Program:
+    """Functions of a model, with those of the compensator of the settings."""
+    if settings.compensator is None:
+        return program(model)
+    if model.rig.quantities.motion != "rotary":
+        raise InputError(
+            problem="the compensator is for rotary drives, and the rig is linear",
+            remedy="export without --compensator",
+        )
+    added = (EQUATIONS, settings.compensator.constants())
+    return program(model, (*FUNCTIONS, *ROOTS), added)
 
 
 def run_equations(reference: Reference, made: Program) -> tuple[list[Array], str]:
@@ -126,6 +140,10 @@ def check_equations(model: Model, settings: Settings, language: str) -> None:
             )
 
 
+def _template(name: str) -> str:
+    return package_files("jbf.export").joinpath(name).read_text(encoding="utf-8")
+
+
 def filled(text: str, prefix: str, precision: str) -> str:
     """Replace the prefix and the floating-point type in a template."""
     return text.replace("{p}", prefix).replace("{real}", precision)
@@ -133,19 +151,22 @@ def filled(text: str, prefix: str, precision: str) -> str:
 
 def c_source(made: Program, prefix: str, precision: str) -> str:
     """Text of the C file of a model."""
-    template = package_files("jbf.export").joinpath("friction.c.txt").read_text(encoding="utf-8")
-    text = C(prefix, precision).source(made, PUBLIC)
+    template = _template("friction.c.txt")
+    text = C(prefix, precision).source(made, (*FUNCTIONS, *ROOTS))
     return filled(template.replace("@FUNCTIONS@", text), prefix, precision)
 
 
 def _header(model: Model, made: Program, prefix: str, precision: Precision) -> str:
-    template = package_files("jbf.export").joinpath("friction.h.txt").read_text(encoding="utf-8")
+    template = _template("friction.h.txt")
     quantities = model.rig.quantities
+    compensated = any(f.name in ROOTS for f in made.functions)
     for name, text in {
         "TITLE": " + ".join([model.law, *model.effects]),
         "VERSION": _core.__version__,
         "GUARD": prefix.upper() + "_H",
         "STATES": str(made.states),
+        "JUMP": "  {p}_real jump;\n" if compensated else "",
+        "COMPENSATOR": _template("compensator.h.txt") if compensated else "",
         "FORCE": quantities.force,
         "LENGTH": quantities.length,
         "SPEED": quantities.speed,

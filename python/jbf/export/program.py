@@ -54,8 +54,11 @@ def law_equations(model: Model) -> tuple[LawEquations, LawEquations]:
     return law, PRESLIDING if "presliding" in model.effects else law
 
 
-def equations(model: Model) -> dict[str, list[ast.stmt]]:
-    """Statements of a model by the placeholder that they replace."""
+def equations(model: Model, compensated: bool) -> dict[str, list[ast.stmt]]:
+    """Statements of a model by the placeholder that they replace.
+
+    `compensated` adds the part of the force that jumps to the state, for a compensator.
+    """
     law, bristles = law_equations(model)
 
     def of_effects(stage: Mapping[str, str]) -> str:
@@ -71,6 +74,9 @@ def equations(model: Model) -> dict[str, list[ast.stmt]]:
         "start_of_bristles": bristles.start,
         "slope_of_bristles": bristles.slope,
         "force_of_bristles": bristles.force if bristles.states else RIGID,
+        "jump_of_force": f"state.jump = {'drag' if bristles.states else 'level + drag'}"
+        if compensated
+        else "",
         "rest": "state.resting = state.velocity == 0.0 and place.velocity == 0.0"
         if model.law == "coulomb"
         else "",
@@ -78,7 +84,11 @@ def equations(model: Model) -> dict[str, list[ast.stmt]]:
     return {name: ast.parse(text).body for name, text in texts.items()}
 
 
-def program(model: Model, roots: tuple[str, ...] = ("start", "step")) -> Program:
+def program(
+    model: Model,
+    roots: tuple[str, ...] = ("start", "step"),
+    added: tuple[str, Mapping[str, Value]] | None = None,
+) -> Program:
     """Compose the functions of a model.
 
     Parameters
@@ -87,15 +97,20 @@ def program(model: Model, roots: tuple[str, ...] = ("start", "step")) -> Program
         The model, of a law and effects with equations.
     roots
         Functions that the user calls: `start`, `step`, `slopes`, `settled`.
+    added
+        Text of the functions of a compensator, and their constants.
     """
     law, bristles = law_equations(model)
-    text = "\n".join([FUNCTIONS, STEP, SLOPES if "slopes" in roots else ""])
+    text = "\n".join(
+        [FUNCTIONS, STEP, SLOPES if "slopes" in roots else "", added[0] if added else ""]
+    )
     tree = ast.parse(text.replace("inner_steps()", _inner_steps(law, bristles)))
-    tree = _Completed(equations(model)).visit(tree)
+    tree = _Completed(equations(model, added is not None)).visit(tree)
     available = {f.name: _without_unused(f) for f in tree.body if isinstance(f, ast.FunctionDef)}
     functions = tuple(_reachable(available, roots))
+    known = {**constants_of(model), **(added[1] if added else {})}
     used = {node.id for f in functions for node in ast.walk(f) if isinstance(node, ast.Name)}
-    constants = {name: value for name, value in constants_of(model).items() if name in used}
+    constants = {name: value for name, value in known.items() if name in used}
     forces = [f for f in functions if f.name in ("act", "slopes", "settled")]
     read = {n.attr for f in forces for n in ast.walk(f) if isinstance(n, ast.Attribute)}
     inputs = tuple(name for name in MOTION if name == "velocity" or name in read)
@@ -181,6 +196,10 @@ class _Unused(ast.NodeTransformer):
         target = node.targets[0] if isinstance(node, ast.Assign) else node.target
         unread = isinstance(target, ast.Name) and target.id not in self.read
         return None if unread else node
+
+    def visit_If(self, node: ast.If) -> ast.stmt | None:
+        self.generic_visit(node)
+        return node if node.body or node.orelse else None
 
     visit_Assign = visit_AugAssign = _kept
 

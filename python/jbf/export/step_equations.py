@@ -18,6 +18,7 @@ def act(state: Out[State], motion: Motion, dt_s: real):
     state.force = bent + smooth + drag * sign(v) + extra
     state.level = level
     state.velocity = v
+    jump_of_force()
 
 
 def towards(place: Out[Motion], before: Motion, after: Motion, fraction: real):

@@ -99,8 +99,7 @@ class Syntax:
         if isinstance(node, ast.Name):
             return node.id
         if isinstance(node, ast.Attribute):
-            assert isinstance(node.value, ast.Name)
-            return self._field(node.value.id, node.attr)
+            return self._field(self._atom(node.value), node.attr)
         if isinstance(node, ast.Subscript):
             return f"{self._atom(node.value)}[{self._index(node.slice)}]"
         assert isinstance(node, ast.Call)

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.export.compensator import Compensator
 from jbf.export.ledger import Ledger, Term
 from jbf.export.reference import Reference
 from jbf.results import Result
@@ -43,12 +44,15 @@ class Settings:
         Version of MuJoCo whose elements may be used.
     precision
         Floating-point type of C code.
+    compensator
+        Settings of the compensator in the C code; None for the friction model alone.
     """
 
     points: int = 20
     joint: str = "joint"
     mujoco: str = "4.0.0"
     precision: Precision = "double"
+    compensator: Compensator | None = None
 
     def check_joint_is_identifier(self) -> None:
         """Raise an InputError if the name of the joint is not an identifier of C and Python."""

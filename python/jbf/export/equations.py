@@ -257,6 +257,12 @@ CONTACT: dict[str, str] = {
         "jump *= max(1.0 + dry_temperature_dependence_a_1_k * "
         "(temperature - dry_temperature_dependence_T_0_c), 0.0)"
     ),
+    "viscous_temperature_dependence": """
+warmth = 1.0 / max(temperature - viscous_temperature_dependence_C_c, 20.0)
+stated = 1.0 / max(viscous_temperature_dependence_T_0_c - viscous_temperature_dependence_C_c, 20.0)
+warmth = viscous_temperature_dependence_B_k * (warmth - stated)
+smooth *= exp(min(max(warmth, -7.0), 7.0))
+""",
     "viscous_thinning": "smooth = smooth / (1.0 + abs(v) * viscous_thinning_w)",
     "dry_asymmetry": "jump *= 1.0 + dry_asymmetry_a * sign(v)",
     "stribeck_asymmetry": (

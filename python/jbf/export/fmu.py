@@ -1,4 +1,4 @@
-"""Targets `fmu2` and `fmu3`: source-code FMUs for Co-Simulation around the target `c`."""
+"""Targets `fmu2` and `fmu3`: source-code FMUs around the target `c`."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ import io
 import uuid
 import xml.etree.ElementTree as ET
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib.resources import files as package_files
 
 from jbf import _core
+from jbf.export.equations import LAWS
 from jbf.export.plain_c import PlainC, filled, plain_c
+from jbf.export.program import law_equations
 from jbf.export.reference import Reference
 from jbf.export.target import MAIN, STEM, Settings, Target, Written, xml_text
 from jbf.records.quantities import Quantities
@@ -31,6 +33,8 @@ _BASE_UNITS: dict[str, dict[str, str]] = {
     "degC": {"K": "1", "offset": "273.15"},
 }
 """Units of FMI by their exponents of SI base units."""
+JUMPING = ("coulomb_drag", "dry_asymmetry", "stribeck_asymmetry", "direction_asymmetry")
+"""Effects whose force jumps where the speed changes its sign."""
 UNIDENTIFIED = "00000000-0000-0000-0000-000000000000"
 """Identifier in the texts from which the identifier of an FMU is computed."""
 
@@ -46,7 +50,7 @@ def write_fmu3(reference: Reference, settings: Settings) -> Written:
 
 
 def _write(reference: Reference, settings: Settings, version: int) -> Written:
-    made = plain_c(reference, settings)
+    made = plain_c(reference, settings, sloped=_continuous(reference))
     archive = _archive(reference, settings, version, made, UNIDENTIFIED)
     identifier = str(uuid.uuid5(uuid.NAMESPACE_OID, "".join(archive.values())))
     archive = _archive(reference, settings, version, made, identifier)
@@ -61,12 +65,21 @@ def _write(reference: Reference, settings: Settings, version: int) -> Written:
     )
 
 
+def _continuous(reference: Reference) -> bool:
+    """Whether the force is continuous in speed and bristle, so that Model Exchange is offered."""
+    bristles = law_equations(reference.machine)[1] if reference.machine.law in LAWS else None
+    if bristles is None or bristles.states != 1 or not bristles.continuous:
+        return False
+    return not set(JUMPING) & set(reference.machine.effects)
+
+
 def _archive(
     reference: Reference, settings: Settings, version: int, made: PlainC, identifier: str
 ) -> dict[str, str]:
     """Texts of the archive by their paths."""
     inputs = made.program.inputs
     variables = {"force": _unit(reference, "force")} | {n: _unit(reference, n) for n in inputs}
+    states = int("slopes" in {f.name for f in made.program.functions})
     template = (
         package_files("jbf.export").joinpath(f"fmi{version}.c.txt").read_text(encoding="utf-8")
     )
@@ -80,6 +93,7 @@ def _archive(
     ]
     for name, text in {
         "COUNT": str(len(variables)),
+        "STATES": str(states),
         "GUID": identifier,
         "INPUTS": "\n".join(assignments),
         "DEFAULTS": "\n".join(defaults),
@@ -92,9 +106,12 @@ def _archive(
     }
     title = " + ".join([reference.model.law, *reference.machine.effects])
     describe = _description_2 if version == 2 else _description_3
+    if states:
+        variables |= dict.fromkeys(("bristle", "der(bristle)"), "")
     archive = {"modelDescription.xml": describe(made.prefix, title, identifier, variables)}
     if version == 3:
         archive["sources/buildDescription.xml"] = _build_description(made.prefix)
+        archive["terminalsAndIcons/terminalsAndIcons.xml"] = _terminals(["force", *inputs])
     return archive | {f"sources/{name}": text for name, text in sources.items()}
 
 
@@ -114,26 +131,38 @@ def _unit(reference: Reference, name: str) -> str:
 def _description_2(prefix: str, title: str, guid: str, variables: dict[str, str]) -> str:
     """Text of modelDescription.xml for FMI 2.0."""
     root = _root(prefix, title, {"fmiVersion": "2.0", "guid": guid})
-    simulation = ET.SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=prefix,
-        canHandleVariableCommunicationStepSize="true",
-        canGetAndSetFMUstate="true",
-        canSerializeFMUstate="true",
-    )
-    sources = ET.SubElement(simulation, "SourceFiles")
-    for name in ("fmi2.c", "model.c"):
-        ET.SubElement(sources, "File", name=name)
+    saved = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
+    kinds = _kinds(variables)
+    for kind, attributes in kinds.items():
+        simulation = ET.SubElement(root, kind, {"modelIdentifier": prefix, **attributes, **saved})
+        sources = ET.SubElement(simulation, "SourceFiles")
+        for name in ("fmi2.c", "model.c"):
+            ET.SubElement(sources, "File", name=name)
     _add_units(root, variables)
     listed = ET.SubElement(root, "ModelVariables")
     for common, real in _variables(variables):
         # In FMI 2.0 unit and start are attributes of the type, not of the variable.
+        if "derivative" in real:
+            real["derivative"] = str(int(real["derivative"]) + 1)  # an index that counts from one
         ET.SubElement(ET.SubElement(listed, "ScalarVariable", common), "Real", real)
     structure = ET.SubElement(root, "ModelStructure")
-    for group in ("Outputs", "InitialUnknowns"):
-        ET.SubElement(ET.SubElement(structure, group), "Unknown", index="1")
+    ET.SubElement(ET.SubElement(structure, "Outputs"), "Unknown", index="1")
+    unknown = [1]
+    if "ModelExchange" in kinds:
+        count = len(variables)
+        derivatives = ET.SubElement(structure, "Derivatives")
+        ET.SubElement(derivatives, "Unknown", index=str(count))
+        unknown += [count - 1, count]
+    initial = ET.SubElement(structure, "InitialUnknowns")
+    for index in unknown:
+        ET.SubElement(initial, "Unknown", index=str(index))
     return XML + xml_text(root)
+
+
+def _kinds(variables: dict[str, str]) -> dict[str, dict[str, str]]:
+    """Interfaces that an FMU offers, with their attributes."""
+    stepped = {"CoSimulation": {"canHandleVariableCommunicationStepSize": "true"}}
+    return {"ModelExchange": {}, **stepped} if "bristle" in variables else stepped
 
 
 def _root(prefix: str, title: str, attributes: dict[str, str]) -> ET.Element:
@@ -162,6 +191,12 @@ def _variables(units: dict[str, str]) -> Iterator[tuple[dict[str, str], dict[str
         if reference == 0:
             common |= {"causality": "output", "initial": "calculated"}
             common["description"] = "force that resists the motion"
+        elif "bristle" in name:
+            common |= {"causality": "local", "initial": "calculated"}
+            common["description"] = "force of the bristle, a continuous state"
+            if name == "der(bristle)":
+                common["description"] = "its time derivative"
+                real["derivative"] = str(reference - 1)
         else:
             common |= {"causality": "input", "description": f"{name} of the drive"}
             real["start"] = str(DEFAULT_C if name == "temperature" else 0.0)
@@ -178,14 +213,10 @@ def _add_units(root: ET.Element, variables: dict[str, str]) -> None:
 def _description_3(prefix: str, title: str, token: str, variables: dict[str, str]) -> str:
     """Text of modelDescription.xml for FMI 3.0."""
     root = _root(prefix, title, {"fmiVersion": "3.0", "instantiationToken": token})
-    ET.SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=prefix,
-        canHandleVariableCommunicationStepSize="true",
-        canGetAndSetFMUState="true",
-        canSerializeFMUState="true",
-    )
+    saved = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
+    kinds = _kinds(variables)
+    for kind, attributes in kinds.items():
+        ET.SubElement(root, kind, {"modelIdentifier": prefix, **attributes, **saved})
     _add_units(root, variables)
     listed = ET.SubElement(root, "ModelVariables")
     for common, real in _variables(variables):
@@ -203,8 +234,14 @@ def _description_3(prefix: str, title: str, token: str, variables: dict[str, str
     assert units is not None
     ET.SubElement(ET.SubElement(units, "Unit", name="s"), "BaseUnit", s="1")
     structure = ET.SubElement(root, "ModelStructure")
-    for group in ("Output", "InitialUnknown"):
-        ET.SubElement(structure, group, valueReference="0")
+    ET.SubElement(structure, "Output", valueReference="0")
+    unknown = [0]
+    if "ModelExchange" in kinds:
+        count = len(variables)
+        ET.SubElement(structure, "ContinuousStateDerivative", valueReference=str(count - 1))
+        unknown += [count - 2, count - 1]
+    for number in unknown:
+        ET.SubElement(structure, "InitialUnknown", valueReference=str(number))
     return XML + xml_text(root)
 
 
@@ -215,6 +252,27 @@ def _build_description(prefix: str) -> str:
     sources = ET.SubElement(configuration, "SourceFileSet", language="C99")
     for name in ("fmi3.c", "model.c"):
         ET.SubElement(sources, "SourceFile", name=name)
+    return XML + xml_text(root)
+
+
+def _terminals(names: Sequence[str]) -> str:
+    """Text of terminalsAndIcons.xml: one terminal with the force and the motion of the drive."""
+    root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    terminal = ET.SubElement(
+        ET.SubElement(root, "Terminals"),
+        "Terminal",
+        name="drive",
+        matchingRule="bus",
+        description="motion of the drive, and the force that resists it",
+    )
+    for name in names:
+        ET.SubElement(
+            terminal,
+            "TerminalMemberVariable",
+            variableName=name,
+            memberName=name,
+            variableKind="signal",
+        )
     return XML + xml_text(root)
 
 
@@ -230,5 +288,5 @@ def _zipped(archive: dict[str, str]) -> bytes:
     return buffer.getvalue()
 
 
-FMU2 = Target("fmu2", "source-code FMU for FMI 2.0 (Co-Simulation)", ".fmu", write_fmu2)
-FMU3 = Target("fmu3", "source-code FMU for FMI 3.0 (Co-Simulation)", ".fmu", write_fmu3)
+FMU2 = Target("fmu2", "source-code FMU for FMI 2.0", ".fmu", write_fmu2)
+FMU3 = Target("fmu3", "source-code FMU for FMI 3.0", ".fmu", write_fmu3)

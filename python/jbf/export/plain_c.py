@@ -24,6 +24,10 @@ from jbf.export.target import MAIN, Precision, Settings, Target, Written
 from jbf.models.model import Model
 
 Array = npt.NDArray[np.float64]
+SLOPES = """
+/* Assign the time derivatives of the bristles, and return the force that resists the motion. */
+{p}_real {p}_slopes({p}_state *state, const {p}_motion *motion);
+"""
 FUNCTIONS = ("start", "step")
 """Functions of every model that the header declares."""
 
@@ -54,12 +58,15 @@ class PlainC:
     notes: tuple[str, ...]
 
 
-def plain_c(reference: Reference, settings: Settings) -> PlainC:
-    """Write a model as C99 and run it."""
+def plain_c(reference: Reference, settings: Settings, sloped: bool = False) -> PlainC:
+    """Write a model as C99 and run it.
+
+    `sloped` adds the time derivatives of the bristles, for a solver.
+    """
     model = reference.machine
     check_equations(model, settings, "C")
     prefix = f"{settings.joint}_friction"
-    made = _program(model, settings)
+    made = program(model, (*FUNCTIONS, "slopes")) if sloped else _program(model, settings)
     source = c_source(made, prefix, settings.precision)
     header = _header(model, made, prefix, settings.precision)
     force, evaluated_by = _run(reference, source, header, prefix, settings.precision)
@@ -152,20 +159,23 @@ def filled(text: str, prefix: str, precision: str) -> str:
 def c_source(made: Program, prefix: str, precision: str) -> str:
     """Text of the C file of a model."""
     template = _template("friction.c.txt")
-    text = C(prefix, precision).source(made, (*FUNCTIONS, *ROOTS))
+    text = C(prefix, precision).source(made, (*FUNCTIONS, "slopes", *ROOTS))
     return filled(template.replace("@FUNCTIONS@", text), prefix, precision)
 
 
 def _header(model: Model, made: Program, prefix: str, precision: Precision) -> str:
     template = _template("friction.h.txt")
     quantities = model.rig.quantities
-    compensated = any(f.name in ROOTS for f in made.functions)
+    names = {f.name for f in made.functions}
+    compensated, sloped = bool(names & set(ROOTS)), "slopes" in names
+    fields = [*(["jump"] if compensated else []), *([f"slope[{made.states}]"] if sloped else [])]
     for name, text in {
         "TITLE": " + ".join([model.law, *model.effects]),
         "VERSION": _core.__version__,
         "GUARD": prefix.upper() + "_H",
         "STATES": str(made.states),
-        "JUMP": "  {p}_real jump;\n" if compensated else "",
+        "FIELDS": "".join(f"  {{p}}_real {name};\n" for name in fields),
+        "SLOPES": SLOPES if sloped else "",
         "COMPENSATOR": _template("compensator.h.txt") if compensated else "",
         "FORCE": quantities.force,
         "LENGTH": quantities.length,

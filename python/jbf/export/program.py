@@ -20,7 +20,7 @@ from jbf.export.step_equations import BRISTLES, RIGID, SLOPES, STEP
 from jbf.models.model import Model
 
 MOTION = ("velocity", "acceleration", "position", "weight_offset", "load", "temperature")
-"""Fields of a motion beside its time."""
+"""Fields of a motion, without its time."""
 KNOWN = {*CONTACT, *OTHER, *TRANSMISSION, "presliding"}
 """Effects with equations."""
 Value = float | tuple[float, ...]

@@ -16,6 +16,7 @@ import tempfile
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 import jbf
@@ -225,6 +226,10 @@ def page() -> str:
 
 
 if __name__ == "__main__":
+    missing = [name for name in ("mujoco", "rumoca", "blark") if find_spec(name) is None]
+    if missing:
+        print(f"{PAGE.name} stays as it is: pip install {' '.join(missing)}")
+        sys.exit(0)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         PAGE.write_text(page(), encoding="utf-8")

@@ -80,7 +80,7 @@ def add(commands: Commands) -> None:
         "--joint",
         metavar="NAME",
         default=default.joint,
-        help="c, FMU, simulators: name of the joint, which is the prefix of names in C; "
+        help="code, FMU, simulators: name of the joint, which is the prefix of names in code; "
         f"default {default.joint}",
     )
     parser.add_argument(

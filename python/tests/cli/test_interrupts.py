@@ -47,7 +47,8 @@ def register(at: int) -> dict[str, Any]:
 
 
 def fit() -> jbf.Fit:
-    return jbf.fit(Rig(), RUNS, ["inertia", "stopping"], law="coulomb")
+    start = {"inertia.m_e": 30.0}
+    return jbf.fit(Rig(), RUNS, ["inertia", "stopping"], law="coulomb", start=start)
 
 
 def test_fit_interrupted_at_first_evaluation_raises_plain_keyboard_interrupt() -> None:

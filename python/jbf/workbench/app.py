@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
+import secrets
 from collections.abc import AsyncIterator, Callable
 from importlib.resources import files
 from typing import Any
@@ -70,21 +70,30 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
     async def upload(request: Request) -> Response:
         name = request.query_params.get("name", "")
         try:
-            path = session.folder.new_file(name)
+            session.folder.check_upload(name)
         except JbfError as error:
             return _refused(str(error))
-        part = path.with_name(f".{path.name}.part")
+        part = session.folder.root / f".{name}.{secrets.token_hex(4)}.part"
+
+        def added() -> str:
+            with session.lock:
+                return session.folder.add(part, name)
+
         try:
             with part.open("xb") as file:
                 async for block in request.stream():
                     file.write(block)
-            os.replace(part, path)
+            stored = await run_in_threadpool(added)
         except ClientDisconnect:
             return _refused("the upload was cancelled", 400)
+        except JbfError as error:
+            return _refused(str(error))
+        except OSError as error:
+            return _refused(f"{name}: cannot be written ({error.strerror})")
         finally:
             part.unlink(missing_ok=True)
         session.changed()
-        return JSONResponse({"file": name})
+        return JSONResponse({"file": stored})
 
     async def events(request: Request) -> Response:
         return StreamingResponse(_news(session, request), media_type="text/event-stream")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import filecmp
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -23,6 +25,8 @@ _RECORDINGS = {suffix for kind in FORMATS for suffix in kind.suffixes} - {".csv"
 _UPLOADS = _RECORDINGS | {".csv", ".toml", ".zip"}
 _OWN = {LEDGER, "workbench.json"}
 """Files that the program writes itself; they are not recordings."""
+_TRUTH = "truth.json"
+"""Answer of a simulated campaign, which is not listed as a recording."""
 
 
 @dataclass(frozen=True)
@@ -71,17 +75,22 @@ class Folder:
         """Name of a path within the folder."""
         return Path(os.path.realpath(path)).relative_to(self.root).as_posix()
 
-    def new_file(self, name: str) -> Path:
-        """Path for a new uploaded file.
-
-        The name must be a file name without a folder, of a supported kind, that is not in use.
+    def check_upload(self, name: str) -> None:
+        """Check the name of an uploaded file.
 
         Raises
         ------
         InputError
-            The name does not meet these conditions.
+            The name contains a folder, is hidden, is that of a file that jbf writes, or its kind
+            is not supported.
         """
         kind = PurePosixPath(name).suffix.lower()
+        if name in _OWN:
+            raise InputError(
+                file=quoted(name),
+                problem="is written by jbf; it is not a recording",
+                remedy="drop a recording, or session.zip to continue a session",
+            )
         if "/" in name or "\\" in name or name.startswith(".") or kind not in _UPLOADS:
             endings = ", ".join(sorted(_UPLOADS))
             raise InputError(
@@ -89,12 +98,24 @@ class Folder:
                 problem="is not a recording, rig, map or session",
                 remedy=f"give {endings}",
             )
-        path = self.path(name)
-        if os.path.lexists(self.root / name):
-            raise InputError(
-                file=quoted(name), problem="already exists", remedy="rename one of the two"
-            )
-        return path
+        self.path(name)
+
+    def add(self, upload: Path, name: str) -> str:
+        """Move an uploaded file into the folder, and return its name there.
+
+        If a file with this name and content exists, it is kept and the upload is removed. If it
+        has other content, the upload is given a number, as in `log_2.csv`.
+        """
+        path = PurePosixPath(name)
+        for candidate in chain([name], (f"{path.stem}_{k}{path.suffix}" for k in count(2))):
+            target = self.root / candidate
+            if not os.path.lexists(target):
+                os.replace(upload, target)
+                return candidate
+            if target.is_file() and filecmp.cmp(upload, self.path(candidate), shallow=False):
+                upload.unlink()
+                return candidate
+        raise AssertionError  # the names do not end
 
     def listing(self) -> dict[str, Any]:
         """Campaigns (a rig and runs in one folder) and files by kind; sessions are archives."""
@@ -119,7 +140,7 @@ class Folder:
                 names_by_kind["csv"].append(name)
             elif suffix == ".zip":
                 names_by_kind["sessions"].append(name)
-            elif suffix in _RECORDINGS and path.name not in _OWN:
+            elif suffix in _RECORDINGS and path.name not in _OWN | {_TRUTH}:
                 names_by_kind["other"].append(name)
         names_by_kind["campaigns"] = [
             {"rig": rig, "runs": runs}

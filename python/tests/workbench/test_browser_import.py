@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,38 @@ def test_table_of_columns_with_long_names_fits_the_window(tmp_path: Path) -> Non
         )
         ((wide, shown),) = page.evaluate(widths)
         assert wide <= shown
+
+
+def test_dropped_files_are_opened_and_replace_none(tmp_path: Path) -> None:
+    folder, elsewhere = tmp_path / "folder", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.mkdir()
+    write_log_without_units(folder / "odd.csv")
+    write_log_without_units(elsewhere / "odd.csv")
+    (elsewhere / "photo.png").write_bytes(b"")
+    with served(folder) as address, examine_runs(address) as (page, _):
+        # The same file again.
+        page.wait_for_selector("[data-listed]")
+        page.set_input_files("input[type=file]", str(elsewhere / "odd.csv"))
+        page.wait_for_selector("h2 >> text=Import odd.csv")
+        assert page.locator("[data-key=note]").count() == 0
+        page.reload()
+        # Other content, after a file of an unknown kind.
+        with (elsewhere / "odd.csv").open("a") as file:
+            file.write("8000;1;1;0\n")
+        page.wait_for_selector("[data-listed]")
+        dropped = [str(elsewhere / name) for name in ("photo.png", "odd.csv")]
+        page.set_input_files("input[type=file]", dropped)
+        page.wait_for_selector("h2 >> text=Import odd_2.csv")
+        page.wait_for_selector("[data-key=note] >> text=odd_2.csv")
+        assert "photo.png" in page.inner_text("[data-key=note]")
+        page.reload()
+        # A rig with runs.
+        sample = resources.files("jbf") / "data" / "samples" / "axis"
+        page.wait_for_selector("[data-listed]")
+        dropped = [str(sample / name) for name in ("run_1.csv", "run_2.csv", "rig.toml")]
+        page.set_input_files("input[type=file]", dropped)
+        page.wait_for_selector("#runs [data-key=run-run_2]")
 
 
 @pytest.mark.extended

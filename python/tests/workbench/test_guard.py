@@ -13,6 +13,7 @@ pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
 from jbf.workbench import actions
 from jbf.workbench.app import create_app
+from jbf.workbench.files import Folder
 from jbf.workbench.guard import POLICY
 from jbf.workbench.session import Session
 from starlette.applications import Starlette
@@ -111,7 +112,7 @@ def test_upload_above_limit_is_refused(session: Session, campaign: Path, declare
 @pytest.mark.parametrize(
     "name",
     ["../up.csv", "a/b.csv", "..", "", "/etc/x.csv", ".hidden.csv", "run.py", "run.html",
-     "a\\b.csv", "model.so", "x.csv\0.toml", "rig.toml"],
+     "a\\b.csv", "model.so", "x.csv\0.toml", "workbench.json"],
 )  # fmt: skip
 def test_upload_with_unsafe_name_is_refused(client: TestClient, campaign: Path, name: str) -> None:
     before = sorted(campaign.parent.rglob("*"))
@@ -125,6 +126,36 @@ def test_uploaded_file_has_the_bytes_of_the_request(client: TestClient, campaign
     assert client.post("/api/upload?name=new.csv", content=b"time_s\n1\n").status_code == 200
     assert (campaign / "new.csv").read_bytes() == b"time_s\n1\n"
     (campaign / "new.csv").unlink()
+
+
+def test_upload_with_a_used_name_keeps_both_contents(session: Session, tmp_path: Path) -> None:
+    """The same content is stored once; other content is given a number."""
+    session.folder = Folder.of(tmp_path)
+    client = client_of(session)
+
+    def stored(content: bytes) -> str:
+        answer = client.post("/api/upload?name=log.csv", content=content)
+        return str(answer.json()["file"])
+
+    first, second = b"time_s\n1\n", b"time_s\n2\n"
+    names = [stored(content) for content in (first, first, second, second)]
+    assert names == ["log.csv", "log.csv", "log_2.csv", "log_2.csv"]
+    contents = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert contents == {"log.csv": first, "log_2.csv": second}
+
+
+def test_upload_does_not_write_through_a_link_that_leads_outside(
+    session: Session, tmp_path: Path
+) -> None:
+    inside, secret = tmp_path / "inside", tmp_path / "secret.csv"
+    inside.mkdir()
+    secret.write_bytes(b"secret")
+    (inside / "log.csv").symlink_to(secret)
+    session.folder = Folder.of(inside)
+    answer = client_of(session).post("/api/upload?name=log.csv", content=b"time_s\n1\n")
+    assert answer.status_code == 422
+    assert secret.read_bytes() == b"secret"
+    assert [path.name for path in inside.iterdir()] == ["log.csv"]
 
 
 OUTSIDE = ("../secret.toml", "/etc/passwd", "link/rig.toml")

@@ -72,27 +72,40 @@ export class Files {
     h("div", { class: "row" }, go, h("span", { class: "faint" }, "one map for all: select files with the same columns")));
   }
 
+  // Copy files into the folder and open them: a session, a rig with its runs, or recordings to import.
   async take(files) {
-    const names = [];
+    const names = [], notes = [];
     for (const file of files) {
       const progress = (share) => this.page.say(`Copying ${file.name}: ${Math.round(100 * share)} %`, "doing");
-      try { names.push((await upload(file, progress)).file); } catch (error) { this.page.failed(error); break; }
+      try {
+        const name = (await upload(file, progress)).file;
+        names.push(name);
+        if (name !== file.name) notes.push(`${file.name} is in the folder with other content; the new file is named ${name}.`);
+      } catch (error) {
+        if (error.name === "AbortError") { this.page.failed(error); break; }
+        notes.push(`${error.message}.`);
+      }
     }
     this.picked = new Set(names);
-    const session = names.find((name) => name.endsWith(".zip"));
-    if (session) { if (await this.page.do("open_session", { file: session })) this.done(); else await this.list(); }
-    else if (names.length) { this.page.say("", ""); await this.look(names); } else await this.list();
+    const session = names.find((name) => name.endsWith(".zip")), runs = names.filter((name) => name.endsWith(".csv"));
+    const recordings = names.filter((name) => !/\.(toml|zip)$/.test(name)), note = notes.join(" ");
+    const rig = names.some((name) => name.endsWith(".toml")) ? (await get("files")).rigs.find((name) => names.includes(name)) : null;
+    if (session || (rig && runs.length)) {
+      const opened = session ? await this.page.do("open_session", { file: session }) : await this.page.do("open", { rig, runs });
+      if (opened) this.done(); else await this.list();
+    } else if (recordings.length) { await this.look(recordings, null, note); return; } else await this.list();
+    if (note) this.page.say(note, names.length ? "done" : "error");
   }
 
   // What the columns are, in a form that can be changed until the numbers are right.
-  async look(files, joint = null) {
+  async look(files, joint = null, note = "") {
     const found = await this.page.do("look", { file: files[0], joint });
     if (!found) { await this.list(); return; }
     this.importing(true);
-    new ImportForm(this.page, this.map, files, found, {
+    new ImportForm(this.page, this.map, files, { ...found, note }, {
       done: () => this.done(),
       closed: () => { put(this.map); this.importing(false); this.list(); },
-      again: (other) => this.look(files, other),
+      again: (other) => this.look(files, other, note),
     });
     scrollTo(0, 0);
   }

@@ -80,7 +80,7 @@ export class ImportForm {
     const text = h("textarea", { "aria-label": "map", spellcheck: "false", "data-key": "map", onchange: () => { this.text = text.value; this.send(null); } });
     text.value = this.text;
     this.plots = h("div");
-    put(this.place, h("h2", {}, `Import ${names}`),
+    put(this.place, h("h2", {}, `Import ${names}`), found.note ? h("p", { "data-key": "note" }, found.note) : null,
       h("p", { class: answer?.problem && !open ? "bad" : "", role: "status", "data-key": "problem" }, this.says(open)),
       h("div", { class: "cards" }, [...found.joint, ...this.points].map((point, i) => this.card(point, i)), this.confirm.map((point) => this.confirmation(point))),
       h("div", { class: "row" },

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import webbrowser
@@ -50,12 +51,17 @@ def run(options: WorkbenchOptions) -> int:
         where = (
             "The page opens in your browser" if opens_browser else "Open this address in a browser"
         )
-        outputs.say(f"{address}\n{where}. Ctrl-C stops the program.", {})
+        outputs.say(f"{address}\n{where}. Ctrl-C saves the session and stops the program.", {})
         outputs.flush()
         if opens_browser:
             webbrowser.open(address)
 
-    serve(options.folder, options.port, opened, demo=options.demo)
+    def ended(sentence: str) -> None:
+        with contextlib.suppress(OSError):  # the terminal is closed
+            outputs.say(sentence, {})
+            outputs.flush()
+
+    serve(options.folder, options.port, opened, ended, demo=options.demo)
     return 0
 
 

@@ -13,7 +13,7 @@ from jbf.errors import InputError
 from jbf.workbench import vendored
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
-from jbf.workbench.session_file import load
+from jbf.workbench.session_file import keep, load, save_changes
 
 HOST = "127.0.0.1"
 
@@ -60,10 +60,42 @@ def _ended_by_signals() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
 
 
-def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool = False) -> None:
-    """Serve the workbench page for a folder until Ctrl-C; `opened` is called with its address.
+def _saved(session: Session) -> list[str]:
+    """Save the changes of a session; return sentences about this and about the running fit."""
+    job, sentences = session.jobs.job, []
+    if job is not None and job.kind != "compare":
+        sentences.append(f"{job.words}: cancelled.")
+    try:
+        path = save_changes(session)
+    except InputError as error:
+        return [*sentences, f"The session was not saved: {error}."]
+    if path is not None:
+        sentences.append(f"Session saved: {path}. jbf workbench {path.parent} continues it.")
+    return sentences
+
+
+def serve(
+    folder: str,
+    port: int,
+    opened: Callable[[str], None],
+    ended: Callable[[str], None],
+    *,
+    demo: bool = False,
+) -> None:
+    """Serve the workbench page for a folder until Ctrl-C, then save the session.
 
     SIGTERM and SIGHUP end it as well, with `SystemExit`.
+
+    Parameters
+    ----------
+    folder, port
+        Folder of the session, and port of the server; 0 selects a free one.
+    opened
+        Called with the address of the page.
+    ended
+        Called with each sentence about the saved session and a cancelled fit.
+    demo
+        Whether the sample of a bearing is opened instead of the saved session, which is kept.
 
     Raises
     ------
@@ -85,6 +117,7 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
     session = Session(Folder.of(folder))
     try:
         if demo:
+            keep(session)
             open_sample(session, "bearing")
         else:
             load(session)
@@ -98,8 +131,12 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
         )
         # The fragment of an address is sent to no server and appears in no log.
         opened(f"http://{HOST}:{at}/#token={token}")
-        with _ended_by_signals():
-            uvicorn.Server(config).run(sockets=[listener])
+        try:
+            with _ended_by_signals():
+                uvicorn.Server(config).run(sockets=[listener])
+        finally:
+            for sentence in _saved(session):
+                ended(sentence)
     finally:
         session.close()
         listener.close()

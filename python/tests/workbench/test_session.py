@@ -24,7 +24,7 @@ from jbf.workbench.files import Folder
 from jbf.workbench.jobs import Ended, Part
 from jbf.workbench.models import Models
 from jbf.workbench.session import Session
-from jbf.workbench.session_file import FILE, load, save
+from jbf.workbench.session_file import FILE, load, save, save_changes
 from jbf.workbench.work import Settings
 from starlette.testclient import TestClient
 from workbench_parts import client_of, wait_until, wait_until_idle
@@ -238,6 +238,35 @@ def test_models_of_a_rig_return_when_it_is_opened_again(fitted: Session) -> None
     again.close()
 
 
+def test_models_are_saved_only_if_the_file_lacks_them(fitted: Session) -> None:
+    assert save_changes(fitted) == fitted.folder.root / FILE
+    assert save_changes(fitted) is None
+    again = Session(fitted.folder)
+    load(again)
+    wait_until_idle(again)
+    assert again.models.ledger() == fitted.models.ledger()
+    assert save_changes(again) is None
+    again.close()
+
+
+def test_session_whose_run_was_removed_keeps_its_models(fitted: Session) -> None:
+    save(fitted)
+    run = fitted.folder.root / fitted.on_bench().run_names[0]
+    run.rename(run.with_suffix(".removed"))
+    again = Session(fitted.folder)
+    try:
+        assert load(again)
+        assert again.bench is None
+        assert again.message["kind"] == "error"
+        assert save_changes(again) is None
+    finally:
+        run.with_suffix(".removed").rename(run)
+    again.open("rig.toml", fitted.on_bench().run_names)
+    wait_until_idle(again)
+    assert again.models.ledger() == fitted.models.ledger()
+    again.close()
+
+
 def test_rig_that_is_opened_twice_keeps_its_models(fitted: Session) -> None:
     before = fitted.models.ledger()
     fitted.open("rig.toml", list(fitted.on_bench().run_names))
@@ -334,8 +363,12 @@ def test_every_effect_of_the_catalogue_has_a_shape() -> None:
         ("[]", "does not have the format"),
         ('{"format": "jbf workbench 9"}', "does not have the format"),
         ('{"format": "jbf workbench 1"}', "is not valid"),
-        ('{"format": "jbf workbench 1", "rig": "../rig.toml", "runs": []}', "not a name"),
-        ('{"format": "jbf workbench 1", "rig": "gone.toml", "runs": ["a.csv"]}', "does not exist"),
+        ('{"format": "jbf workbench 1", "rig": "gone.toml", "runs": ["a.csv"]}', "is not valid"),
+        (
+            '{"format": "jbf workbench 1", "rig": "../rig.toml", "runs": [], "models": [], '
+            '"trims": {}, "excluded": []}',
+            "not a name",
+        ),
     ],
 )
 def test_broken_session_file_is_refused_in_one_line(session: Session, text: str, key: str) -> None:

@@ -2,7 +2,7 @@
 import { h, put } from "./dom.js";
 
 const THINGS = [
-  ["session", "Session (workbench.json)", "all rigs with their models and trims; jbf workbench in this folder restores it", null],
+  ["session", "Session (workbench.json)", "all rigs with their models and trims; also saved when the program ends; jbf workbench in this folder restores it", null],
   ["bundle", "Session as one file (session.zip)", "the open rig with its runs and models; drop it on the page of any folder", "session.zip"],
   ["model", "Model (model.toml)", "for jbf predict, compare, export", "model.toml"],
   ["report", "Report (report.html)", "one page with pictures", "report.html"],

@@ -16,6 +16,7 @@ from jbf.importing.cutting.settings import METHODS, CutSettings
 from jbf.importing.expression import FUNCTIONS
 from jbf.importing.formats.registry import FORMATS
 from jbf.importing.formats.table import Options
+from jbf.models.catalogue import laws
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ("control", "dependencies", "drives", "import", "versions")
@@ -94,6 +95,11 @@ def test_import_page_names_every_option_function_and_format() -> None:
     assert [extra for extra in extras if f"`jbf[{extra}]`" not in text] == []
     project = text_of("pyproject.toml")
     assert [e for e in extras if not re.search(rf"^{e} = \[", project, re.MULTILINE)] == []
+
+
+def test_every_law_has_a_section_to_which_the_workbench_links() -> None:
+    headings = re.findall(r"^## (\w+)$", (ROOT / "docs/laws.md").read_text("utf-8"), re.M)
+    assert {law.name for law in laws().values()} <= set(headings)
 
 
 def test_tables_of_the_validation_page_are_those_of_the_result_files() -> None:

@@ -124,12 +124,22 @@ def test_candidates_have_a_sentence_a_shape_and_a_description(
     page.wait_for_selector("dialog", state="detached")
 
 
-def test_page_and_effects_link_to_their_documentation(opened: tuple[Page, Messages]) -> None:
+def test_page_laws_and_effects_link_to_their_documentation(
+    opened: tuple[Page, Messages],
+) -> None:
     page, messages = opened
     enter(page, 3)
-    for key, file in (("docs", "workbench.md"), ("docs-inertia", "effects/inertia.md")):
+    page.select_option("[data-key=law]", "stribeck")
+    page.wait_for_selector("[data-key=docs-law][href$=stribeck]")
+    for key, file in (
+        ("docs", "workbench.md"),
+        ("docs-inertia", "effects/inertia.md"),
+        ("docs-law", "laws.md#stribeck"),
+    ):
         address = page.get_attribute(f"[data-key={key}]", "href")
         assert address == f"https://github.com/jbf-friction/jbf/blob/main/docs/{file}"
+    page.select_option("[data-key=law]", "auto")
+    page.wait_for_selector("[data-key=docs-law][href$='laws.md']")
     assert messages.outside == []
 
 

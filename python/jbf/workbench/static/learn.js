@@ -2,7 +2,7 @@
 import { get } from "./api.js";
 import { showCandidates } from "./candidates.js";
 import { Chart, curve } from "./chart.js";
-import { h, number, put } from "./dom.js";
+import { documentation, h, number, put } from "./dom.js";
 import { showLedger } from "./ledger.js";
 import { about, Parameters, sideBySide } from "./parameters.js";
 import { correlations, power } from "./tables.js";
@@ -39,6 +39,8 @@ export class LearnSection {
       state.laws.map(({ name, summary, refused }) =>
         h("option", { value: name, selected: name === state.law, disabled: Boolean(refused), title: refused ?? summary }, `${name === "auto" ? "automatic" : name}: ${refused ?? summary}`)));
     put(this.head, h("label", {}, "Law ", law),
+      documentation(state.law === "auto" ? "laws.md" : `laws.md#${state.law}`, "Documentation of the law",
+        { "data-key": "docs-law", title: "equations, parameters and sources" }),
       h("button", { "data-key": "fit-law", disabled: busy, title: state.law === "auto" ? "the first law to try for this rig; Diagnose selects the law" : "",
         onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} without effects`),
       h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose"));

@@ -155,7 +155,7 @@ class Session:
             ]
 
     def choose_law(self, law: str) -> None:
-        """Choose the base law of models without a parent."""
+        """Choose the base law of models without a parent and of diagnoses."""
         if law != AUTO:
             find_law(law)
             check_rig(self.on_bench().rig, law)
@@ -171,6 +171,8 @@ class Session:
     ) -> None:
         """Start a fit with tests of candidates (`round`), a `fit` with settings, or a diagnosis.
 
+        A fit has the law of its parent; without a parent, and in a diagnosis, the chosen law.
+
         Raises
         ------
         InputError
@@ -178,7 +180,8 @@ class Session:
         """
         with self.lock:
             bench = self.on_bench()
-            law = self.law if parent is None else str(self.models.node(parent)["law"])
+            is_new = parent is None or kind == "diagnose"
+            law = self.law if is_new else str(self.models.node(parent)["law"])
             for name in effects:
                 find_effect(name)
             if kind != "diagnose" and law == AUTO:

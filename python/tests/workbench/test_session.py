@@ -275,6 +275,18 @@ def test_rig_that_is_opened_twice_keeps_its_models(fitted: Session) -> None:
     assert not any(kept["models"] for kept in fitted.kept_campaigns())
 
 
+def test_diagnosis_has_the_chosen_law_not_that_of_the_current_model(fitted: Session) -> None:
+    before = fitted.law
+    fitted.choose_law("coulomb")
+    fitted.begin("diagnose", (), 2)
+    job = fitted.jobs.job
+    fitted.jobs.cancel(at_once=True)
+    wait_until_idle(fitted)
+    fitted.choose_law(before)
+    assert job is not None
+    assert "coulomb" in job.words
+
+
 @pytest.mark.extended
 def test_model_selected_during_a_comparison_is_compared_later(fitted: Session) -> None:
     save(fitted)

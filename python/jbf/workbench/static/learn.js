@@ -43,7 +43,7 @@ export class LearnSection {
         { "data-key": "docs-law", title: "equations, parameters and sources" }),
       h("button", { "data-key": "fit-law", disabled: busy, title: state.law === "auto" ? "the first law to try for this rig; Diagnose selects the law" : "",
         onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} without effects`),
-      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose"));
+      h("button", { class: "main", "data-key": "diagnose", disabled: busy, title: "diagnose with the selected law", onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose"));
     put(this.verdict, node?.diagnosis ? [h("b", {}, "Diagnosis of the base law: "), node.diagnosis.sentence] : "");
     showLedger(page, this.ledger); showCandidates(page, this.ranks);
     about(page, this.about); sideBySide(page, this.beside);

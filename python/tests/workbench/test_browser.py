@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,8 +46,8 @@ def models(page: Page) -> list[dict[str, float | None]]:
     texts = page.locator("#models [data-key^=model-] small").all_inner_texts()
     result = []
     for text in texts:
-        inside, outside = text.split("; held out ")
-        result.append({"rms": float(inside.split()[0]), "held_out": float(outside)})
+        rms, held_out_rms = map(float, re.findall(r"RMS ([\d.]+)", text))
+        result.append({"rms": rms, "held_out": held_out_rms})
     return result
 
 

@@ -32,7 +32,7 @@ export function showCandidates(page, place) {
         h("span", { class: `tag ${tint}` }, words)) : null,
       t ? h("p", { class: "faint" }, sentence(t.reason)) : null,
       p && !(t?.evidence > 0) ? h("p", { class: "faint" },
-        `These runs show it from ${p.detectable}${p.meaning ? ` (${p.meaning})` : ""}${p.hidden ? ", which is more than is typical" : ""}.${p.confounded_with ? ` Confounded with ${p.confounded_with}.` : ""}`) : null,
+        `Detectable in these runs from ${p.detectable}${p.meaning ? ` (${p.meaning})` : ""}${p.hidden ? ", more than its typical size" : ""}.${p.confounded_with ? ` Confounded with ${p.confounded_with}.` : ""}`) : null,
       h("div", { class: "choices" },
         h("button", { class: t?.outcome === "added" ? "main" : "", "data-key": `add-${name}`, disabled: busy, "aria-label": `add ${name}`,
           onclick: () => page.do("fit", { effects: [...(node?.effects ?? []), name], parent }) }, "Add"),

@@ -24,6 +24,7 @@ export class Files {
       h("button", { "data-key": `sample-${sample.name}`, onclick: () => this.page.do("sample", { name: sample.name }) }, "Open the sample"))));
     const others = [
       campaigns.length ? h("section", {}, h("h2", {}, some ? "Open another rig with its runs" : "Rigs and their runs in this folder"),
+        h("p", { class: "faint" }, "The rig file describes the machine; its runs are the CSV files in the same folder."),
         h("ul", { class: "plain" }, campaigns.map((c) => h("li", {},
           h("button", { "data-key": `open-${c.rig}`, "aria-label": `open ${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"),
           ` ${c.rig}, ${count(c.runs.length, "run")}`, c.models ? h("b", {}, `, ${count(c.models, "model")} kept`) : null)))) : null,
@@ -56,7 +57,7 @@ export class Files {
     if (!found.rigs.length || !found.csv.length) return null;
     const rig = h("select", { "aria-label": "rig" }, found.rigs.map((name) => h("option", { value: name }, name)));
     const runs = h("select", { multiple: true, size: 4, "aria-label": "runs" }, found.csv.map((name) => h("option", { value: name }, name)));
-    return h("details", {}, h("summary", { "data-key": "picker" }, "Choose a rig and runs from different folders"), h("div", { class: "row" }, rig, runs,
+    return h("details", {}, h("summary", { "data-key": "picker" }, "Open a rig file with runs of other folders"), h("div", { class: "row" }, rig, runs,
       h("button", { onclick: () => open(rig.value, [...runs.selectedOptions].map((o) => o.value)) }, "Open")));
   }
 
@@ -69,7 +70,7 @@ export class Files {
     const tick = (name, on) => { this.picked[on ? "add" : "delete"](name); go.disabled = !this.picked.size; };
     return h("section", {}, h("h2", {}, "Logger files in this folder"), h("ul", { class: "plain list" }, names.map((name) => h("li", {},
       h("label", {}, h("input", { type: "checkbox", "data-key": `pick-${name}`, checked: this.picked.has(name), onchange: (e) => tick(name, e.target.checked) }), ` ${name}`)))),
-    h("div", { class: "row" }, go, h("span", { class: "faint" }, "one map for all: select files with the same columns")));
+    h("div", { class: "row" }, go, h("span", { class: "faint" }, "all are read with the same assignment of columns: select files of one logger")));
   }
 
   // Copy files into the folder and open them: a session, a rig with its runs, or recordings to import.

@@ -87,12 +87,12 @@ export class ImportForm {
         h("button", { class: "main", "data-key": "import-diagnose", disabled: !ready, onclick: () => this.keep(true) }, "Import and diagnose"),
         h("button", { "data-key": "import", disabled: !ready, onclick: () => this.keep(false) }, "Import only"),
         h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close"),
-        h("label", {}, "as folder ", into), this.kind()),
+        h("label", {}, "into folder ", into), this.kind()),
       this.plots,
       this.part("columns", "Columns: quantity, unit and sign", h("div", { class: "scroll" }, h("table", { class: "columns" },
-        h("thead", {}, h("tr", {}, ["column", "course", "first values", "quantity", "unit", "negate", "read as"].map((w) => h("th", {}, w)))),
+        h("thead", {}, h("tr", {}, ["column", "first rows", "first values", "quantity", "unit", "negate", "range as read"].map((w) => h("th", {}, w)))),
         h("tbody", {}, found.columns.map((column) => this.row(column)))), this.formulas(), this.rig())),
-      this.part("map-text", "Map as text (formulas, cuts, clocks)", text));
+      this.part("map-text", "Map: settings of the import as text (formulas, cuts, clocks)", text));
     if (answer?.curves) this.preview(answer);
     else put(this.plots, h("h3", {}, "The columns, first rows"), h("div", { class: "cards" },
       found.columns.filter((c) => c.shape).map((c) => h("figure", { class: "course" }, course(c.shape),
@@ -152,7 +152,7 @@ export class ImportForm {
     const kept = answer.pieces.filter((p) => p.keep), several = answer.pieces.length > 1;
     for (const recording of answer.curves.slice(0, 2)) {
       const pieces = answer.pieces.filter((p) => p.file === recording.file), at = (p, t) => t + (recording.starts_s[p.segment] ?? 0);
-      this.plots.append(h("h3", {}, `${recording.file}: ${several ? `cut into ${kept.length} runs; shaded: left out` : "one run, not cut"}`));
+      this.plots.append(h("h3", {}, `${recording.file}: ${several ? `cut into ${kept.length} runs; shaded parts are not used` : "one run, not cut"}`));
       for (const [key, { time_s, values }] of Object.entries(recording.columns)) {
         const place = h("div", { class: "plot" }), quantity = this.found.quantities.find((q) => q.key === key);
         this.plots.append(place);

@@ -4,19 +4,19 @@ import { h, put } from "./dom.js";
 const THINGS = [
   ["session", "Session (workbench.json)", "all rigs with their models and trims; also saved when the program ends; jbf workbench in this folder restores it", null],
   ["bundle", "Session as one file (session.zip)", "the open rig with its runs and models; drop it on the page of any folder", "session.zip"],
-  ["model", "Model (model.toml)", "for jbf predict, compare, export", "model.toml"],
-  ["report", "Report (report.html)", "one page with pictures", "report.html"],
-  ["rust", "Constants in Rust (model.rs)", "for a controller with jbf-core", "model.rs"],
-  ["c", "Constants in C (model.h)", "for a controller with jbf-c", "model.h"],
-  ["next_run", "Motion of the next run (next_run.csv)", "reference for the rig", "next_run.csv"],
-  ["trimmed", "Trimmed runs (trimmed/)", "CSV files, without excluded runs", null],
+  ["model", "Model (model.toml)", "input of jbf predict, jbf compare and jbf export", "model.toml"],
+  ["report", "Report (report.html)", "verdict, tables and plots on one page", "report.html"],
+  ["rust", "Constants in Rust (model.rs)", "for a controller in Rust with the crate jbf-core", "model.rs"],
+  ["c", "Constants in C (model.h)", "for a controller in C with the library jbf-c", "model.h"],
+  ["next_run", "Motion of the next run (next_run.csv)", "set points to record next; proposed by a diagnosis", "next_run.csv"],
+  ["trimmed", "Trimmed runs (trimmed/)", "one CSV file for each run that is not excluded", null],
 ];
 
 export class KeepSection {
   constructor(page, place) {
     this.page = page; this.place = place;
     this.list = h("div"); this.words = h("p", { role: "status" }); this.same = h("div");
-    place.append(h("h2", {}, "Export"), h("p", { class: "faint" }, "Of the selected model."), this.list, this.words, this.same);
+    place.append(h("h2", {}, "Export"), h("p", { class: "faint" }, "Files of the selected model, the runs and the session."), this.list, this.words, this.same);
   }
 
   update() {

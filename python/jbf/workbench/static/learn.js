@@ -44,7 +44,7 @@ export class LearnSection {
       h("button", { "data-key": "fit-law", disabled: busy, title: state.law === "auto" ? "the first law to try for this rig; Diagnose selects the law" : "",
         onclick: () => page.do("fit", { effects: [], parent: null }) }, `Fit ${state.fit_law} without effects`),
       h("button", { class: "main", "data-key": "diagnose", disabled: busy, title: "diagnose with the selected law", onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose"));
-    put(this.verdict, node?.diagnosis ? [h("b", {}, "Diagnosis of the base law: "), node.diagnosis.sentence] : "");
+    put(this.verdict, node?.diagnosis ? [h("b", {}, "Verdict on the base law, before effects were added: "), node.diagnosis.sentence] : "");
     showLedger(page, this.ledger); showCandidates(page, this.ranks);
     about(page, this.about); sideBySide(page, this.beside);
     this.values.show(this.model !== node?.id); this.model = node?.id;
@@ -82,7 +82,7 @@ export class LearnSection {
       curves: [curve("residual_n", "record minus model", "measured"), curve("contribution", "predicted contribution", "beside", { width: 1.8 })],
       zoomed: (from, to) => page.look({ span: [from, to] }) });
     this.chart.show(found);
-    put(this.sketched, `${page.effect} on ${page.run}: fits the residual best at ${number(found.times_usual, 2)} times its typical strength. Select another run on the left.`);
+    put(this.sketched, `${page.effect} on ${page.run}: drawn at ${number(found.times_usual, 2)} times its typical strength, where it fits the residual best. Select another run in the list of runs.`);
   }
 
   diagnosis_details(d) {

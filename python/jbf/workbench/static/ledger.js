@@ -6,7 +6,7 @@ const newly = (now, before) => [...now.filter((e) => !before.includes(e)).map((e
 
 export function showLedger(page, place) {
   const node = page.model, steps = node?.diagnosis ? node.diagnosis.steps : page.state.ledger, unit = page.units.force;
-  const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) || step.changes || "fitted again" : newly(step.effects, []) || "base law" }));
+  const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) || step.changes || "refitted" : newly(step.effects, []) || "base law" }));
   if (!line.length) { put(place, h("p", { class: "faint" }, "No model yet: fit the base law, or diagnose.")); return; }
   const noise = line.at(-1).noise_rms, { one, words, title } = scale(noise, unit);
   const most = Math.max(noise ? 1 : 0, ...line.flatMap((l) => [l.rms, l.held_out_rms]).map((v) => (v ?? 0) / one));
@@ -24,5 +24,5 @@ export function showLedger(page, place) {
   const foot = line.length * 40;
   if (noise) picture.append(s("line", { class: "floor", x1: x(noise), x2: x(noise), y1: 0, y2: foot }),
     s("text", { x: x(noise), y: foot + 16, "text-anchor": most > 4 ? "start" : "middle", class: "faint" }, `noise ${number(noise)} ${unit}`));
-  put(place, picture, h("p", { class: "faint" }, key("model", "fit"), key("out", "held out"), noise ? key("noise", "noise") : null, ` · bars: ${title}, from zero`));
+  put(place, picture, h("p", { class: "faint" }, key("model", "fit"), key("out", "held-out"), noise ? key("noise", "noise") : null, ` · bars: ${title}, from zero`));
 }

@@ -29,7 +29,7 @@ export class Parameters {
     put(this.table, h("table", {}, h("thead", {}, h("tr", {}, head.map((w) => h("th", {}, w)))), h("tbody", {}, rows)));
     put(this.foot, h("button", { class: "main", "data-key": "refit", disabled: busy, onclick: () => this.refit() }, "Fit with these settings"),
       h("button", { "data-key": "reset-parameters", onclick: () => this.show(true) }, "Reset"),
-      h("span", { class: "faint" }, "A changed value is drawn at once and is the start of the fit; a fixed one is kept."));
+      h("span", { class: "faint" }, "A changed value is drawn at once and is the starting value of the fit; a fixed value is kept."));
   }
 
   row(name, p) {
@@ -48,7 +48,7 @@ export class Parameters {
       value.dispatchEvent(new Event("input"));
     });
     return h("tr", {}, h("td", {}, name, h("br"), h("small", {}, p.meaning)), h("td", {}, value), h("td", {}, p.unit ?? ""),
-      h("td", {}, held ? `held${p.note ? `: ${p.note}` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`),
+      h("td", {}, held ? `held${p.note ? ` (${p.note})` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`),
       h("td", {}, h("input", { type: "checkbox", checked: this.fixed.has(name), "aria-label": `fix ${name}`, "data-key": `fix-${name}`,
         onchange: (e) => this.fixed[e.target.checked ? "add" : "delete"](name) })),
       h("td", {}, field("lower", this.bounds[name]?.[0], end(0))), h("td", {}, field("upper", this.bounds[name]?.[1], end(1))));

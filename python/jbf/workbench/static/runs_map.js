@@ -88,7 +88,7 @@ export class RunsMap {
       ctx.textAlign = align; ctx.fillText(number(edges[Math.round(k)], 2), name + k * this.col, high - 20);
     }
     ctx.textAlign = "center"; ctx.fillText(`${this.units.velocity} (${this.units.speed})`, name + this.wide / 2, high - 5);
-    this.scale = `Full colour: ${number(most, 2)} ${this.units.force}; orange: record above the model; blue: below; no colour: no samples. Click a cell to select it.`;
+    this.scale = `Orange: record above the model; blue: below; darkest colour: ${number(most, 2)} ${this.units.force}; white: no samples. Click a cell to select it.`;
     this.words.textContent = this.scale;
   }
 

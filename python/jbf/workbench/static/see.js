@@ -80,7 +80,7 @@ export class SeeSection {
       onchange: () => { this.all = all; this.looked({}); } }), ` ${words} `);
     const across = h("select", { "aria-label": "horizontal axis", "data-key": "axis", onchange: (e) => { this.axis = e.target.value; this.select(null); this.looked({}); } },
       [["speed", page.units.velocity], ["position", "position"]].map(([v, words]) => h("option", { value: v, selected: v === this.axis }, words)));
-    put(this.which, h("label", {}, "over ", across), runs(false, "this run"), runs(true, "all runs"), key("measured", "measured"),
+    put(this.which, h("label", {}, "against ", across), runs(false, "this run"), runs(true, "all runs"), key("measured", "measured"),
       node ? [key("model", "model"), key("hollow", "not used by the fit (reversals, rests, start)")] : null);
   }
 

@@ -22,7 +22,7 @@ export class Stribeck {
   show(node, units) {
     this.node = node; this.units = units;
     this.canvas.style.display = node ? "" : "none";
-    this.words.textContent = node ? "Without inertia, weight and offset. Dots: measured, with standard deviation; line: model; dotted: base law at steady speed." : "No model yet.";
+    this.words.textContent = node ? "Inertia, weight and offset are subtracted. Dots: measured, with standard deviation; line: model; dotted: base law at steady speed." : "No model yet.";
     this.draw();
   }
 

@@ -18,7 +18,7 @@ export function correlations({ names, matrix }) {
 }
 
 export function power(rows) {
-  return h("div", { class: "scroll" }, h("table", {}, head(["effect", "detectable from", "of friction", "distinct from", "confounded with"]),
+  return h("div", { class: "scroll" }, h("table", {}, head(["effect", "detectable from", "share of friction", "distinguishable from", "confounded with"]),
     h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), h("td", { class: "n" }, p.detectable, p.meaning ? [h("br"), h("small", {}, p.meaning)] : null),
       [p.share, p.distinguishable, p.confounded_with].map((words) => h("td", { class: "n" }, words)))))));
 }

@@ -14,6 +14,9 @@ from jbf.models.catalogue import transition_speed
 from jbf.reporting.advice import advice_on
 from jbf.workbench.thinning import ranges_of
 
+ON_THE_PAGE = ("(--law auto)", "(Diagnose with the automatic law)")
+"""Option of the command line in an advice, and what does the same on the page."""
+
 
 def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
     """Description, causes, advice and worst intervals of each residual pattern, for the page.
@@ -26,6 +29,7 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
     marks = []
     for failure in comparison.failures:
         advice = vars(advice_on(failure.axis, campaign))
+        advice = {key: words.replace(*ON_THE_PAGE) for key, words in advice.items()}
         mark: dict[str, Any] = {**failure.to_dict(), **advice, "bin": "", "ranges_s": {}}
         axis = binned.get(failure.axis)
         if axis is not None:

@@ -126,6 +126,20 @@ def test_candidates_have_a_sentence_a_shape_and_a_description(
     page.wait_for_selector("dialog", state="detached")
 
 
+def test_candidate_to_add_is_listed_before_one_with_more_evidence(
+    opened: tuple[Page, Messages],
+) -> None:
+    page, _ = opened
+    trials = [
+        {"effect": "backlash", "outcome": "rejected", "evidence": 90.0},
+        {"effect": "cogging", "outcome": "no gain", "evidence": -5.0},
+        {"effect": "inertia", "outcome": "added", "evidence": 60.0},
+    ]
+    order = "async (trials) => (await import('/static/candidates.js')).ranked(trials)"
+    names = [trial["effect"] for trial in page.evaluate(order, trials)]
+    assert names == ["inertia", "backlash", "cogging"]
+
+
 def test_page_laws_and_effects_link_to_their_documentation(
     opened: tuple[Page, Messages],
 ) -> None:

@@ -152,6 +152,12 @@ def test_marked_samples_of_a_failure_move_in_direction_of_worst_bin(fitted: Sess
         assert np.mean(np.sign(run.velocity[inside]) == np.sign(centre)) > 0.9
 
 
+def test_advice_on_a_failure_names_no_option_of_the_command_line(fitted: Session) -> None:
+    failures = fitted.models.node(1)["failures"]
+    assert failures
+    assert not [f["to_do"] for f in failures if "--" in f["to_do"]]
+
+
 def test_model_is_kept_if_its_parent_is_shown(fitted: Session) -> None:
     fitted.show(fitted.models.node()["parent"])
     assert fitted.models.current == 1

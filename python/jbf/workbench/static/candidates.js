@@ -11,10 +11,13 @@ const OUTCOME = {
 
 const sentence = (words) => `${words.charAt(0).toUpperCase()}${words.slice(1)}.`;
 
+// The candidate to add first, then the others by their evidence.
+export const ranked = (trials) => [...trials].sort((a, b) => (b.outcome === "added") - (a.outcome === "added") || b.evidence - a.evidence);
+
 export function showCandidates(page, place) {
   const { state } = page, node = page.model, busy = Boolean(state.job) || !state.runs.length;
   const tried = new Map((node?.trials ?? []).map((t) => [t.effect, t])), strength = new Map((node?.power ?? []).map((p) => [p.effect, p]));
-  const order = [...tried.values()].sort((a, b) => b.evidence - a.evidence);
+  const order = ranked([...tried.values()]);
   // The nearest few are shown even if none of them gains anything.
   const shown = order.filter((t, i) => i < 3 || (i < MOST && t.outcome !== "no gain")), others = order.filter((t) => !shown.includes(t));
   const rest = state.effects.filter((e) => !tried.has(e.name) && !(node?.effects ?? []).includes(e.name));
@@ -44,7 +47,8 @@ export function showCandidates(page, place) {
   const first = !node ? h("p", { class: "faint" }, "Fit the base law first; then the candidates are ranked here.")
     : node.trials === null ? h("p", { class: "faint" }, "Testing the candidates…")
       : node.trials.length === 0 ? h("p", { class: "faint" }, "The candidates of this model were not tested.")
-        : cards(shown.map((t) => card(t.effect, t)));
+        : [h("p", { class: "faint" }, "Evidence: twice the gain in log-likelihood, less the acceptance threshold of the added parameters."),
+          cards(shown.map((t) => card(t.effect, t)))];
   const more = [...others.map((t) => card(t.effect, t)), ...open.map((e) => card(e.name, null))];
   put(place, first,
     more.length ? h("details", {}, h("summary", { "data-key": "others" }, `other effects (${more.length})`), cards(more)) : null,

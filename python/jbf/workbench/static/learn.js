@@ -1,6 +1,6 @@
 // Section 3: what is missing: candidates with their evidence, one click adds, the error falls.
 import { get } from "./api.js";
-import { showCandidates } from "./candidates.js";
+import { ranked, showCandidates } from "./candidates.js";
 import { Chart, curve } from "./chart.js";
 import { documentation, h, number, put } from "./dom.js";
 import { showLedger } from "./ledger.js";
@@ -60,7 +60,7 @@ export class LearnSection {
     const { page } = this, node = page.model, tried = node?.trials ?? [];
     if (node?.effects.includes(page.effect)) page.effect = null;
     if (page.effect === null || !tried.some((t) => t.effect === page.effect)) {
-      page.effect = tried.length ? tried.reduce((a, b) => (b.evidence > a.evidence ? b : a)).effect : null;
+      page.effect = ranked(tried)[0]?.effect ?? null;
     }
   }
 

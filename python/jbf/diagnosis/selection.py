@@ -187,13 +187,22 @@ def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
 
 
 def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
-    """Whether an effect of the current model has evidence or is confirmed by independent units."""
+    """Whether an effect of the current model has evidence or is confirmed by held-out runs.
+
+    If another effect is missing, the residual may be so correlated that no effect has evidence. An
+    effect is needed even then if independent units confirm it, or if the held-out error is larger
+    without it.
+    """
     full = candidates.converge(current)
     if evidence(candidates, full, simpler) >= 0.0:
         return True
+    if full_gain(candidates, full, simpler) <= 0.0:
+        return False
     rest = tuple(e for e in current if e != name)
-    gains = full_gain(candidates, full, simpler) > 0.0
-    return gains and units_confirm(candidates, rest, name)
+    if units_confirm(candidates, rest, name):
+        return True
+    least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
+    return candidates.held_out_rms(rest) > least
 
 
 def _gain_is_from_local_minimum(
@@ -305,12 +314,9 @@ def start_model(candidates: Candidates) -> Names:
     """Select the machine terms of a drive that the runs require, estimated jointly with the law.
 
     The fit with each term starts from the fit without it, since a search from the starting values
-    of all terms may end at a weight of zero. A term without evidence is kept if the held-out error
-    is larger without it: if another effect is missing, the residual may be so correlated that no
-    term has evidence.
+    of all terms may end at a weight of zero.
     """
     present: Names = ()
-    policy = candidates.policy
     for name in machine_of(candidates, [n for n in TERMS if n in candidates.names]):
         near = candidates.converge(present)
         present = (*present, name)
@@ -319,10 +325,7 @@ def start_model(candidates: Candidates) -> Names:
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.refit_from(rest, present)
-        worse = candidates.held_out_rms(
-            rest
-        ) > policy.held_out.no_worse_ratio * candidates.held_out_rms(present)
-        if not (worse or needed(candidates, present, name, simpler)):
+        if not needed(candidates, present, name, simpler):
             present = rest
     return present
 

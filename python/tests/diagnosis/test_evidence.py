@@ -9,7 +9,7 @@ from jbf import Diagnosis, Rig, Run
 from jbf.diagnosis import Trial
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, price_of
 from jbf.diagnosis.level import score_test
-from jbf.diagnosis.selection import weights
+from jbf.diagnosis.selection import needed, weights
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share, likelihood_gain, share_of_gain
 from jbf.estimation.noise import WHITE
@@ -139,6 +139,25 @@ def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -
     assert anywhere == pytest.approx(gain * effective_share(rich) - price)
     assert found < 0.0 < anywhere <= gain - price
     assert evidence(candidates, simple, rich) == pytest.approx(-gain - price_of(candidates, -1))
+
+
+@pytest.mark.parametrize(("offset_n", "needs"), [(0.0, False), (0.2, True)])
+def test_effect_without_evidence_is_needed_if_held_out_runs_are_predicted_worse_without_it(
+    offset_n: float, needs: bool
+) -> None:
+    """A slow wave that no effect describes correlates the residual; four strokes are too few."""
+    t = np.arange(0.0, 20.0, 0.02)
+    v = 0.1 * np.sin(2.0 * np.pi * t / 20.0 + 0.3)
+    runs = []
+    for i in range(2):
+        wave = 0.5 * np.sin(2.0 * np.pi * t / 4.7 + 2.1 * i)
+        noise = 0.05 * np.random.default_rng(i).standard_normal(len(t))
+        force = coulomb(t, v, v) + offset_n + wave + noise
+        runs.append(Run.from_arrays(t, v, force, name=f"{i}"))
+    candidates = coulomb_candidates(runs)
+    current, simpler = ("sensor_offset",), candidates.converge(())
+    assert evidence(candidates, candidates.converge(current), simpler) < -10.0
+    assert needed(candidates, current, "sensor_offset", simpler) == needs
 
 
 def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None:

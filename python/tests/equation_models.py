@@ -39,9 +39,9 @@ def runs_with_all_columns(step_s: float) -> list[jbf.Run]:
     return runs
 
 
-def models_with_many_effects() -> list[jbf.Model]:
-    """Few models that have each effect at least once."""
-    models, rest = [], list(EFFECTS)
+def models_with_many_effects(omitted: tuple[str, ...] = ()) -> list[jbf.Model]:
+    """Few models that have each effect, except those that are omitted, at least once."""
+    models, rest = [], [effect for effect in EFFECTS if effect not in omitted]
     for law in ("dahl", "coulomb", "lugre"):
         chosen = [e for e in rest if reason_not_applicable(built_in()[e], law) is None]
         if chosen:

@@ -14,6 +14,7 @@ STANDARD: dict[str, Callable[..., Any]] = {
     "ABS": abs,
     "EXP": math.exp,
     "LN": math.log,
+    "SQRT": math.sqrt,
     "SIN": math.sin,
     "COS": math.cos,
     "EXPT": math.pow,

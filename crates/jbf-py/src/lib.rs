@@ -20,7 +20,8 @@ mod share;
 mod trajectory;
 
 use jbf_core::law::lugre::{self, LuGre};
-use jbf_core::law::Law;
+use jbf_core::law::seven_parameter::{self, SevenParameter};
+use jbf_core::law::{rate_and_state, Law};
 use pyo3::prelude::*;
 
 /// Adds every class and function to the extension module `jbf._core`.
@@ -32,6 +33,24 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;
     m.add("LUGRE_LONGEST_STEP_S", lugre::LONGEST_STEP_S)?;
     m.add("LUGRE_STEPS_PER_SAMPLE", LuGre::<f64>::ENOUGH_STEPS)?;
+    m.add(
+        "SEVEN_PARAMETER_LONGEST_STEP_S",
+        seven_parameter::LONGEST_STEP_S,
+    )?;
+    m.add(
+        "SEVEN_PARAMETER_STEPS_PER_SAMPLE",
+        SevenParameter::<f64>::ENOUGH_STEPS,
+    )?;
+    m.add(
+        "SEVEN_PARAMETER_DELAY_POINTS",
+        seven_parameter::DELAY_POINTS,
+    )?;
+    m.add("RATE_AND_STATE_AGES_S", rate_and_state::AGES_S)?;
+    m.add("RATE_AND_STATE_LONGEST", rate_and_state::LONGEST)?;
+    m.add(
+        "RATE_AND_STATE_FAR_ABOVE_CREEP",
+        rate_and_state::FAR_ABOVE_CREEP,
+    )?;
     m.add_class::<motion::Motion>()?;
     m.add_class::<chain::Chain>()?;
     m.add_class::<batch::BatchRig>()?;

@@ -14,6 +14,7 @@ MATH = {
     "expm1": "expm1",
     "pow": "pow",
     "log": "log",
+    "sqrt": "sqrt",
     "sin": "sin",
     "cos": "cos",
     "abs": "fabs",
@@ -31,8 +32,8 @@ static {p}_real {p}_sum(const {p}_real terms[]) {
   return total;
 }"""
 HELPERS = {"sum": SUM} | {
-    name: f"static {{p}}_real {{p}}_{name}({{p}}_real a, {{p}}_real b) {{\n"
-    f"  return (a {sign} b) ? a : b;\n}}"
+    name: f"static {{p}}_real {{p}}_{name}({{p}}_real x, {{p}}_real y) {{\n"
+    f"  return (x {sign} y) ? x : y;\n}}"
     for name, sign in (("max", ">"), ("min", "<"))
 }
 """Functions that math.h lacks, or has with another treatment of numbers that are not finite."""

@@ -12,7 +12,7 @@ from dataclasses import MISSING, dataclass, fields
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.export.program import Value
+from jbf.export.equations import Value
 from jbf.records.run import PathLike
 from jbf.records.toml_file import number, read_toml, refuse_unknown
 
@@ -34,7 +34,7 @@ def extra_force(motion: Motion) -> real:
     return extra
 
 
-def sliding_smooth(motion: Motion) -> real:
+def sliding_smooth(state: State, motion: Motion) -> real:
     """Friction of the contact that does not jump."""
     v = motion.velocity
     friction_of_law()
@@ -51,7 +51,7 @@ def steep_slope(c: Compensator, velocity: real) -> real:
     still: Motion = c.model.motion
     moving.velocity = place
     still.velocity = 0.0
-    viscous = sliding_smooth(moving) + extra_force(moving) - extra_force(still)
+    viscous = sliding_smooth(c.model, moving) + extra_force(moving) - extra_force(still)
     slope = max(viscous * volts_per_force / place, 0.0)
     if observer_gain * slope > observer_keep:
         return slope

@@ -9,16 +9,22 @@ completes them to functions, and a `Syntax` writes them in a language. Names:
 - `jump`, `smooth`: friction of the contact with the sign of the motion, and the rest of it.
 - `drag`, `extra`, `transmitted`: the same of the effects next to the contact; transmitted force.
 - `y[i]`, `level`, `bent`: forces of the bristles, the friction level, the force of all bristles.
+- states of `memory_equations` by their names.
 - parameters of a law by their names, parameters of an effect as `EFFECT_PARAMETER`.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from jbf import _core
 from jbf.models.catalogue import built_in
 from jbf.models.chain import MAX_STEP_S
+
+Value = float | tuple[float, ...]
+"""Value of a constant."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,8 @@ class LawEquations:
         Longest inner step, s, as in the core; zero for a law without memory.
     steps_per_sample
         Number of inner steps of a sample that suffices; zero without such a number.
+    constants
+        Function that returns further constants by name, from the parameters of the law.
     """
 
     friction: str
@@ -58,6 +66,20 @@ class LawEquations:
     states: int = 0
     longest_step_s: float = 0.0
     steps_per_sample: float = 0.0
+    constants: Callable[[Mapping[str, float]], Mapping[str, Value]] = lambda _: {}
+
+
+def _springs(parameters: Mapping[str, float]) -> Mapping[str, Value]:
+    """Stiffnesses and force shares of the springs of `maxwell_slip`."""
+    values = [1.0, *(parameters[name] for name in ("sigma_0", "exponent", "F_v"))]
+    stiffness, share = zip(*_core.maxwell_slip_elements(values), strict=True)
+    return {"spring_stiffness": stiffness, "spring_share": share}
+
+
+def _logarithms(parameters: Mapping[str, float]) -> Mapping[str, Value]:
+    """Logarithms of the slip distance and the reference speed of `rate_and_state`."""
+    logarithms = {"log_slip": "D_c", "log_reference": "v_0"}
+    return {name: math.log(parameters[of]) for name, of in logarithms.items()}
 
 
 VISCOUS = "smooth = F_v * v"
@@ -224,6 +246,42 @@ for i in range(16):
         continuous=False,
         states=16,
         longest_step_s=MAX_STEP_S,
+        constants=_springs,
+    ),
+    "seven_parameter": LawEquations(
+        f"jump = F_c + grown * stribeck_share(late)\n{VISCOUS}",
+        bend="""
+spring_along(state, leg)
+if v == 0.0:
+    stick(state)
+""",
+        start="""
+way = sign(v)
+y[0] = level * way
+""",
+        continuous=False,
+        states=1,
+        longest_step_s=_core.SEVEN_PARAMETER_LONGEST_STEP_S,
+        steps_per_sample=_core.SEVEN_PARAMETER_STEPS_PER_SAMPLE,
+    ),
+    "rate_and_state": LawEquations(
+        f"""
+if v == 0.0:
+    log_speed = log_slip - log_age
+else:
+    log_speed = log(abs(v))
+psi = F_0 + b * (log_age + log_reference - log_slip)
+jump = psi + a * (log_speed - log_reference)
+if jump <= a * {_core.RATE_AND_STATE_FAR_ABOVE_CREEP!r}:
+    if a > 0.0:
+        creep = exp(jump / a) * 0.5
+        jump = a * log(creep + sqrt(creep * creep + 1.0))
+    else:
+        jump = 0.0
+{VISCOUS}
+""",
+        longest_step_s=MAX_STEP_S,
+        constants=_logarithms,
     ),
 }
 """Laws by name."""
@@ -246,6 +304,13 @@ smooth *= factor
 """
 
 CONTACT: dict[str, str] = {
+    "running_in": ("jump *= 1.0 + running_in_a * exp(-(running_in_slid * (1.0 / running_in_s_0)))"),
+    "dwell_stiction": """
+if dwell_stiction_rest_s > 0.0:
+    aged = 1.0 - exp(-((dwell_stiction_rest_s * (1.0 / dwell_stiction_t_0_s)) ** dwell_stiction_m))
+    left = exp(-(dwell_stiction_slid * (1.0 / dwell_stiction_s_0)))
+    jump += dwell_stiction_a * aged * left
+""",
     "stribeck_excess": (
         "jump += stribeck_excess_a * exp(-((abs(v) * (1.0 / stribeck_excess_v_s)) ** "
         "stribeck_excess_n))"
@@ -280,8 +345,27 @@ factor = 1.0 + position_ripple_a * wave
 jump *= factor
 smooth *= factor
 """,
+    "stroke_dependence": f"""
+place = (position - stroke_dependence_x_0) * (1.0 / stroke_dependence_h)
+sine = sin(min(max(place, -1.0), 1.0) * {math.pi / 2!r})
+square = sine * sine
+whole = 1.0 - 2.0 * square
+third = sine * (3.0 - 4.0 * square)
+twice = 2.0 * whole * whole - 1.0
+fifth = 2.0 * whole * third - sine
+sixth = whole * (2.0 * twice - 1.0)
+factor = (1.0 + stroke_dependence_a_1 * sine + stroke_dependence_a_2 * whole
+          + stroke_dependence_a_3 * third + stroke_dependence_a_4 * twice
+          + stroke_dependence_a_5 * fifth + stroke_dependence_a_6 * sixth)
+jump *= max(factor, 0.0)
+""",
     "pitch_ripple": _RIPPLE.format(e="pitch_ripple"),
     "pitch_ripple_2": _RIPPLE.format(e="pitch_ripple_2"),
+    "warm_up": """
+factor = 1.0 + warm_up_a * exp(-(warm_up_elapsed_s * (1.0 / warm_up_tau_s)))
+jump *= factor
+smooth *= factor
+""",
 }
 """Effects of the contact by name, in the order of the chain."""
 

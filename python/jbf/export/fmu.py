@@ -12,7 +12,7 @@ from importlib.resources import files as package_files
 from jbf import _core
 from jbf.export.equations import LAWS
 from jbf.export.plain_c import PlainC, filled, plain_c
-from jbf.export.program import law_equations
+from jbf.export.program import law_equations, memories
 from jbf.export.reference import Reference
 from jbf.export.target import MAIN, STEM, Settings, Target, Written, xml_text
 from jbf.records.quantities import Quantities
@@ -69,6 +69,9 @@ def _continuous(reference: Reference) -> bool:
     """Whether the force is continuous in speed and bristle, so that Model Exchange is offered."""
     bristles = law_equations(reference.machine)[1] if reference.machine.law in LAWS else None
     if bristles is None or bristles.states != 1 or not bristles.continuous:
+        return False
+    # Model Exchange has the bristle as its only state.
+    if any(memory.rates or not memory.solvable for memory in memories(reference.machine)):
         return False
     return not set(JUMPING) & set(reference.machine.effects)
 

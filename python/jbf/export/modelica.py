@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from jbf import _core
+from jbf.errors import InputError
+from jbf.export.memory_equations import MEMORY
 from jbf.export.plain_c import check_equations, exact_terms
 from jbf.export.program import Program, law_equations, program
 from jbf.export.reference import BODY, Reference, force_of_effects
@@ -14,7 +16,7 @@ from jbf.export.rumoca_run import NotSimulated, installed, run_rumoca
 from jbf.export.syntax import Syntax, local_types, wrapped
 from jbf.export.target import MAIN, Settings, Target, Written
 
-BUILT_IN = {"abs", "exp", "log", "sin", "cos", "max", "min", "sign", "sum"}
+BUILT_IN = {"abs", "exp", "log", "sqrt", "sin", "cos", "max", "min", "sign", "sum"}
 DEGREES_C = 20.0
 """Temperature of the example, C."""
 
@@ -42,8 +44,7 @@ class Modelica(Syntax):
     leave = "force := {value};"
 
     def _field(self, owner: str, name: str) -> str:
-        # A contact of the law `coulomb` at zero speed rests.
-        return {"bristle": "y", "resting": "true"}.get(name, name)
+        return {"bristle": "y"}.get(name, name)
 
     def _index(self, node: ast.expr) -> str:
         if isinstance(node, ast.Constant):
@@ -110,8 +111,10 @@ def modelica_package(reference: Reference, settings: Settings) -> tuple[str, Pro
 
     array = f"[{bristles}]"
     forces = "force, slope" if bristles else "force"
-    arguments = ", ".join(["y", *made.inputs] if bristles else made.inputs)
-    inputs = [f"y{array}", *made.inputs] if bristles else list(made.inputs)
+    # States that are not bristles, and the motion.
+    given = [*made.rates, *made.inputs]
+    arguments = ", ".join(["y", *given] if bristles else given)
+    inputs = [f"y{array}", *given] if bristles else given
     functions = {f.name: f for f in made.functions}
     results = f"  output Real force;\n  output Real slope{array};" if bristles else ""
     texts = [
@@ -127,7 +130,7 @@ def modelica_package(reference: Reference, settings: Settings) -> tuple[str, Pro
             syntax.function(
                 functions["settled"],
                 '"Bristles at the start of a motion"',
-                list(made.inputs),
+                given,
                 f"  output Real y{array};",
             )
         )
@@ -135,15 +138,19 @@ def modelica_package(reference: Reference, settings: Settings) -> tuple[str, Pro
         f'  Real y{array} "{quantities.force}; forces of the bristles";',
         f"  Real slope{array};",
     ]
-    initial = [f"initial equation\n  y = settled({', '.join(made.inputs)});"]
+    initial = [f"  {name} = {syntax.expression(start)};" for name, (start, _) in made.rates.items()]
+    initial += [f"  y = settled({', '.join(given)});"] if bristles else []
     block = [
         f'block Friction "{" + ".join([model.law, *model.effects])}"',
         *(declared("input", name, f"{name} of the drive") for name in made.inputs),
         declared("output", "force", "force that resists the motion"),
-        *(state + initial if bristles else []),
+        *(state if bristles else []),
+        *(f'  Real {name} "state of the friction";' for name in made.rates),
+        *(["initial equation", *initial] if initial else []),
         "equation",
         f"  ({forces}) = slopes({arguments});" if bristles else f"  force = slopes({arguments});",
         *(["  der(y) = slope;"] if bristles else []),
+        *(f"  der({name}) = {syntax.expression(rate)};" for name, (_, rate) in made.rates.items()),
         "end Friction;",
     ]
     constants = []
@@ -196,6 +203,12 @@ def write_modelica(reference: Reference, settings: Settings) -> Written:
     """Write a model as a Modelica package."""
     model = reference.machine
     check_equations(model, settings, "Modelica")
+    for term in (model.law, *model.effects):
+        if term in MEMORY and not MEMORY[term].solvable:
+            raise InputError(
+                problem=f"the state of {term} switches and is not a differential equation",
+                remedy="fit without it, or export with --to fmu2 or fmu3 for Co-Simulation",
+            )
     text, made = modelica_package(reference, settings)
     name = package_name(settings)
     force, evaluated_by = reference.force, "jbf, same equations"

@@ -168,13 +168,19 @@ def _header(model: Model, made: Program, prefix: str, precision: Precision) -> s
     quantities = model.rig.quantities
     names = {f.name for f in made.functions}
     compensated, sloped = bool(names & set(ROOTS)), "slopes" in names
-    fields = [*(["jump"] if compensated else []), *([f"slope[{made.states}]"] if sloped else [])]
+    fields = [("real", "jump", 0)] if compensated else []
+    fields += [("real", "slope", made.states)] if sloped else []
+    fields += [(kind, name, length) for name, (kind, length) in made.memory.items()]
+    syntax = C(prefix, precision)
     for name, text in {
         "TITLE": " + ".join([model.law, *model.effects]),
         "VERSION": _core.__version__,
         "GUARD": prefix.upper() + "_H",
         "STATES": str(made.states),
-        "FIELDS": "".join(f"  {{p}}_real {name};\n" for name in fields),
+        "FIELDS": "".join(
+            f"  {syntax.type_name(kind)} {name}{f'[{length}]' if length else ''};\n"
+            for kind, name, length in fields
+        ),
         "SLOPES": SLOPES if sloped else "",
         "COMPENSATOR": _template("compensator.h.txt") if compensated else "",
         "FORCE": quantities.force,

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from jbf import _core
+from jbf.export import memory_equations
 from jbf.export.equations import (
     CONTACT,
     FUNCTIONS,
@@ -15,15 +15,20 @@ from jbf.export.equations import (
     PRESLIDING,
     TRANSMISSION,
     LawEquations,
+    Value,
 )
+from jbf.export.memory_equations import MEMORY, Memory
 from jbf.export.step_equations import BRISTLES, RIGID, SLOPES, STEP
+from jbf.models.catalogue import built_in
+from jbf.models.chain import MAX_STEP_S
 from jbf.models.model import Model
 
 MOTION = ("velocity", "acceleration", "position", "weight_offset", "load", "temperature")
 """Fields of a motion, without its time."""
 KNOWN = {*CONTACT, *OTHER, *TRANSMISSION, "presliding"}
 """Effects with equations."""
-Value = float | tuple[float, ...]
+SOLVED = ("slopes", "settled")
+"""Functions for a solver of differential equations."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +45,23 @@ class Program:
         Number of bristles, at least 1.
     inputs
         Fields of the motion that the force depends on, without the time.
+    memory
+        Types of the states that are not bristles by name: type, and length of an array or zero.
+    rates
+        For a solver: initial value and time derivative of these states by name.
     """
 
     functions: tuple[ast.FunctionDef, ...]
     constants: Mapping[str, Value]
     states: int
     inputs: tuple[str, ...]
+    memory: Mapping[str, tuple[str, int]]
+    rates: Mapping[str, tuple[ast.expr, ast.expr]]
+
+
+def memories(model: Model) -> list[Memory]:
+    """States of the law and the effects of a model that are advanced before the friction."""
+    return [MEMORY[name] for name in (model.law, *model.effects) if name in MEMORY]
 
 
 def law_equations(model: Model) -> tuple[LawEquations, LawEquations]:
@@ -74,11 +90,10 @@ def equations(model: Model, compensated: bool) -> dict[str, list[ast.stmt]]:
         "start_of_bristles": bristles.start,
         "slope_of_bristles": bristles.slope,
         "force_of_bristles": bristles.force if bristles.states else RIGID,
+        "start_of_memory": "\n".join(memory.start for memory in memories(model)),
+        "advance_memory": "\n".join(memory.advance for memory in memories(model)),
         "jump_of_force": f"state.jump = {'drag' if bristles.states else 'level + drag'}"
         if compensated
-        else "",
-        "rest": "state.resting = state.velocity == 0.0 and place.velocity == 0.0"
-        if model.law == "coulomb"
         else "",
     }
     return {name: ast.parse(text).body for name, text in texts.items()}
@@ -100,74 +115,123 @@ def program(
     added
         Text of the functions of a compensator, and their constants.
     """
-    law, bristles = law_equations(model)
+    _, bristles = law_equations(model)
+    solver = SLOPES if "slopes" in roots else ""
     text = "\n".join(
-        [FUNCTIONS, STEP, SLOPES if "slopes" in roots else "", added[0] if added else ""]
+        [FUNCTIONS, memory_equations.FUNCTIONS, STEP, solver, added[0] if added else ""]
     )
-    tree = ast.parse(text.replace("inner_steps()", _inner_steps(law, bristles)))
-    tree = _Completed(equations(model, added is not None)).visit(tree)
+    tree = ast.parse(text.replace("inner_steps()", _inner_steps(model)))
+    fields = _Fields(memories(model))
+    tree = _Completed(equations(model, added is not None), fields).visit(tree)
     available = {f.name: _without_unused(f) for f in tree.body if isinstance(f, ast.FunctionDef)}
     functions = tuple(_reachable(available, roots))
     known = {**constants_of(model), **(added[1] if added else {})}
-    used = {node.id for f in functions for node in ast.walk(f) if isinstance(node, ast.Name)}
+    rates = _rates(model, fields) if solver else {}
+    trees = (*functions, *(part for parts in rates.values() for part in parts))
+    used = {node.id for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Name)}
     constants = {name: value for name, value in known.items() if name in used}
     forces = [f for f in functions if f.name in ("act", "slopes", "settled")]
     read = {n.attr for f in forces for n in ast.walk(f) if isinstance(n, ast.Attribute)}
     inputs = tuple(name for name in MOTION if name == "velocity" or name in read)
-    return Program(functions, constants, max(bristles.states, 1), inputs)
+    variables = {n: _type(t) for memory in memories(model) for n, t in memory.variables.items()}
+    return Program(functions, constants, max(bristles.states, 1), inputs, variables, rates)
 
 
 def constants_of(model: Model) -> dict[str, Value]:
-    """Constants of the equations by name: parameters, and the springs of `maxwell_slip`."""
-    values: dict[str, Value] = {
-        name.replace(".", "_"): value.value for name, value in model.parameters.items()
+    """Constants of the equations by name: the parameters, and those that the law computes."""
+    values = {name.replace(".", "_"): value.value for name, value in model.parameters.items()}
+    return {**values, **LAWS[model.law].constants(values)}
+
+
+def _type(text: str) -> tuple[str, int]:
+    """Type of a state, and the length of an array or zero."""
+    kind, _, length = text.rstrip("]").partition("[")
+    return kind, int(length or 0)
+
+
+def _rates(model: Model, fields: _Fields) -> dict[str, tuple[ast.expr, ast.expr]]:
+    """Initial values and time derivatives of the states of a model, for a solver."""
+    motion = _field("motion", "velocity", ast.Load())
+
+    def expression(text: str) -> ast.expr:
+        tree = fields.visit(ast.parse(text, mode="eval").body)
+        result = _Replaced({"v": motion}).visit(tree)
+        assert isinstance(result, ast.expr)
+        return result
+
+    return {
+        name: (expression(start), expression(rate))
+        for memory in memories(model)
+        for name, (start, rate) in memory.rates.items()
     }
-    if model.law == "maxwell_slip":
-        names = ("sigma_0", "exponent", "F_v")
-        springs = _core.maxwell_slip_elements([1.0, *(model.parameters[n].value for n in names)])
-        stiffness, share = zip(*springs, strict=True)
-        values |= {"spring_stiffness": stiffness, "spring_share": share}
-    return values
 
 
-def _inner_steps(law: LawEquations, bristles: LawEquations) -> str:
+def _inner_steps(model: Model) -> str:
     """Expression for the number of inner steps of a sample."""
-    longest = [x.longest_step_s for x in (law, bristles) if x.longest_step_s > 0.0]
-    if not longest:
+    law, bristles = law_equations(model)
+    effects_remember = any(name in MEMORY for name in model.effects)
+    if not law.longest_step_s and not bristles.states and not effects_remember:
         return "1.0"
-    step = repr(min(longest))
+    longest = min([MAX_STEP_S, *(built_in()[name].longest_step_s for name in model.effects)])
+    step = repr(min(longest, law.longest_step_s or longest))
     if law.steps_per_sample:
-        step = f"max({step}, sample_s * {1.0 / law.steps_per_sample!r})"
+        enough = f"sample_s * {1.0 / law.steps_per_sample!r}"
+        step = f"min({longest!r}, max({law.longest_step_s!r}, {enough}))"
     return f"min(max(ceil(dt_s / {step} - 1e-9), 1.0), 1e6)"
 
 
 class _Completed(ast.NodeTransformer):
     """Replaces placeholders by statements, and names by fields of motion and state."""
 
-    def __init__(self, statements: Mapping[str, list[ast.stmt]]) -> None:
+    def __init__(self, statements: Mapping[str, list[ast.stmt]], fields: _Fields) -> None:
         self.statements = statements
+        self.fields = fields
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        self.fields.solved = node.name in SOLVED
+        return self.generic_visit(node)
 
     def visit_Expr(self, node: ast.Expr) -> ast.AST | list[ast.AST]:
         call = node.value
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and not call.args:
             done: list[ast.AST] = []
             for statement in self.statements[call.func.id]:
-                new = self.visit(_Fields().visit(ast.parse(ast.unparse(statement)).body[0]))
+                new = self.visit(self.fields.visit(ast.parse(ast.unparse(statement)).body[0]))
                 done.extend(new if isinstance(new, list) else [new])
             return done
         return node
 
 
 class _Fields(ast.NodeTransformer):
-    """Replaces names of the equations by fields of `motion` and `state`."""
+    """Replaces names of the equations by fields of `motion` and `state`.
+
+    In functions for a solver, states without a derivative have the value of `Memory.fixed`.
+    """
+
+    def __init__(self, states: list[Memory]) -> None:
+        names = [name for memory in states for name in memory.variables]
+        self.names = {"y": "bristle", "slope": "slope"} | {name: name for name in names}
+        self.fixed = {name: value for memory in states for name, value in memory.fixed.items()}
+        self.solved = False
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         if node.id in MOTION:
             return _field("motion", node.id, node.ctx)
-        fields = {"y": "bristle", "slope": "slope", "resting": "resting"}
-        if node.id in fields:
-            return _field("state", fields[node.id], node.ctx)
+        if self.solved and node.id in self.fixed:
+            return ast.parse(self.fixed[node.id], mode="eval").body
+        if node.id in self.names:
+            return _field("state", self.names[node.id], node.ctx)
         return node
+
+
+class _Replaced(ast.NodeTransformer):
+    """Replaces names by expressions."""
+
+    def __init__(self, values: Mapping[str, ast.expr]) -> None:
+        self.values = values
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return self.values.get(node.id, node)
 
 
 def _field(struct: str, name: str, ctx: ast.expr_context) -> ast.Attribute:

@@ -6,6 +6,10 @@ STEP = '''
 def act(state: Out[State], motion: Motion, dt_s: real):
     """Force at a motion that is reached after dt_s; zero at the start."""
     v = motion.velocity
+    if dt_s > 0.0:
+        advance_memory()
+    else:
+        start_of_memory()
     drag = 0.0
     extra = 0.0
     transmitted = 0.0
@@ -35,8 +39,8 @@ def towards(place: Out[Motion], before: Motion, after: Motion, fraction: real):
     place.temperature = line(before.temperature, after.temperature, fraction)
 
 
-def line(a: real, b: real, fraction: real) -> real:
-    return a + (b - a) * fraction
+def line(before: real, after: real, fraction: real) -> real:
+    return before + (after - before) * fraction
 
 
 def between(state: Out[State], before: Motion, after: Motion, sample_s: real):
@@ -47,7 +51,6 @@ def between(state: Out[State], before: Motion, after: Motion, sample_s: real):
     place: Motion
     for k in range(1, count + 1):
         towards(place, before, after, real(k) / steps)
-        rest()
         act(state, place, dt_s / steps)
 
 
@@ -62,7 +65,6 @@ def start(state: Out[State], motion: Motion) -> real:
     state.motion = motion
     state.velocity = 0.0
     state.level = 0.0
-    state.resting = True
     act(state, motion, 0.0)
     return state.force
 

@@ -19,6 +19,7 @@ STANDARD = {
     "abs": "ABS",
     "exp": "EXP",
     "log": "LN",
+    "sqrt": "SQRT",
     "sin": "SIN",
     "cos": "COS",
     "max": "MAX",
@@ -216,6 +217,10 @@ def _section(title: str, lines: list[str]) -> list[str]:
     return [title, *(f"  {line}" for line in lines), "END_VAR"] if lines else []
 
 
+def _type_of_state(kind: str, length: int) -> str:
+    return f"ARRAY[0..{length - 1}] OF {TYPES[kind]}" if length else TYPES[kind]
+
+
 def _structure(name: str, fields: Mapping[str, str]) -> str:
     lines = [f"    {field} : {kind};" for field, kind in fields.items()]
     return "\n".join([f"TYPE {name} :", "  STRUCT", *lines, "  END_STRUCT", "END_TYPE"])
@@ -241,7 +246,7 @@ def st_source(model: Model, made: Program, prefix: str) -> str:
             "motion": f"{prefix}_motion",
             **dict.fromkeys(("velocity", "level", "force"), "LREAL"),
             "bristle": bristles,
-            "resting": "BOOL",
+            **{name: _type_of_state(*kind) for name, kind in made.memory.items()},
         },
     }
     helpers = [

@@ -23,6 +23,12 @@ MODELS = {
         ["cogging", "inertia"],
         {"F_c": 5.0, "sigma_0": 2e3, "cogging.A": 0.5, "cogging.pitch": 0.9, "inertia.m_e": 0.2},
     ),
+    "states": jbf.Model(
+        JOINT,
+        "seven_parameter",
+        ["dwell_stiction", "warm_up"],
+        {"F_c": 5.0, "F_s_inf": 3.0, "v_s": 0.1, "F_v": 2.0, "k_t": 2e3},
+    ),
     "axis": jbf.Model(AXIS, "coulomb", parameters={"F_c": 5.0, "F_v": 2.0}),
 }
 
@@ -236,7 +242,9 @@ def test_terminal_of_an_fmu_is_valid_and_has_output_and_inputs() -> None:
     [
         MODELS["springs"],
         MODELS["axis"],
+        MODELS["states"],
         jbf.Model(JOINT, "lugre", ["coulomb_drag"], VALUES),
+        jbf.Model(JOINT, "lugre", ["warm_up"], VALUES),
     ],
 )
 def test_model_exchange_is_not_offered_for_a_force_that_jumps(model: jbf.Model) -> None:

@@ -11,6 +11,8 @@ from jbf import export
 from jbf.export.equations import LAWS
 from joint_runs import joint_runs
 
+SWITCHING = ("seven_parameter", "dwell_stiction")
+"""Laws and effects whose state is not a differential equation."""
 rumoca = pytest.importorskip("rumoca", reason="needs rumoca: pip install rumoca")
 
 
@@ -20,7 +22,7 @@ def short_runs() -> list[jbf.Run]:
     return [run.select(np.arange(len(run)) < 600)]
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", [law for law in LAWS if law not in SWITCHING])
 def test_package_of_a_law_follows_the_core_in_rumoca(law: str) -> None:
     ledger = export.to(model_of(law), "modelica", short_runs()).ledger
     assert "Rumoca" in ledger.evaluated_by
@@ -28,11 +30,19 @@ def test_package_of_a_law_follows_the_core_in_rumoca(law: str) -> None:
     assert ledger.share < 1e-3
 
 
-@pytest.mark.parametrize("model", models_with_many_effects(), ids=lambda model: model.law)
+@pytest.mark.parametrize("model", models_with_many_effects(SWITCHING), ids=lambda model: model.law)
 def test_package_with_effects_follows_the_core_in_rumoca(model: jbf.Model) -> None:
     ledger = export.to(model, "modelica", short_runs()).ledger
     assert "simulated by Rumoca" in ledger.evaluated_by
     assert ledger.share < 1e-3
+
+
+@pytest.mark.parametrize(
+    "model", [model_of("seven_parameter"), model_of("lugre", "dwell_stiction")]
+)
+def test_state_that_switches_is_refused(model: jbf.Model) -> None:
+    with pytest.raises(jbf.InputError, match="Co-Simulation"):
+        export.to(model, "modelica", short_runs())
 
 
 @pytest.mark.parametrize("law", ["stribeck", "lugre"])
@@ -52,7 +62,7 @@ def test_example_of_a_package_simulates_with_the_force_of_the_core(law: str) -> 
 
 
 def test_packages_have_no_messages_in_rumoca() -> None:
-    for model in models_with_many_effects():
+    for model in models_with_many_effects(SWITCHING):
         text = export.to(model, "modelica", long_runs()).text
         assert rumoca.validate_source(text) == []
 

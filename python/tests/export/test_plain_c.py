@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -21,7 +22,7 @@ from jbf.export.equations import LAWS
 from joint_runs import JOINT, joint_runs
 
 ULPS = 2
-ALL_BITS = ("coulomb", "maxwell_slip", "elasto_plastic")
+ALL_BITS = ("coulomb", "maxwell_slip", "elasto_plastic", "seven_parameter")
 """Laws whose force is that of the core to the last bit: they use no function of math.h."""
 
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffp-contract=off")
@@ -192,10 +193,18 @@ def test_sample_that_is_not_later_or_not_finite_changes_nothing(tmp_path: Path) 
     assert run_program(exported, tmp_path, doubled).tolist() == plain.tolist()
 
 
+def test_time_and_distance_of_a_state_count_from_the_start_of_the_motion(tmp_path: Path) -> None:
+    model, run = model_of("coulomb", "warm_up", "running_in"), runs_with_all_columns(0.01)[0]
+    exported = export.to(model, "c", [run])
+    record = export.record(model, run)
+    first = run_program(exported, tmp_path, record)
+    later = run_program(exported, tmp_path, replace(record, time_s=record.time_s + 1000.0))
+    assert later == pytest.approx(first, rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("model", "settings"),
     [
-        (jbf.Model(JOINT, "rate_and_state"), export.Settings()),
         (jbf.Model(JOINT, "coulomb", ["backlash"], {"backlash.gap": 0.01}), export.Settings()),
         (jbf.Model(jbf.Rig.thesis()), export.Settings()),
         (jbf.Model(JOINT, "coulomb"), export.Settings(joint="left elbow")),

@@ -56,13 +56,13 @@ use crate::parameter::Start;
 use crate::real::Real;
 
 /// Smallest and largest age of a contact, s; the limits prevent an overflow in single precision.
-const AGES_S: [f64; 2] = [1e-30, 1e30];
+pub const AGES_S: [f64; 2] = [1e-30, 1e30];
 /// Longest sliding distance of a step in units of D_c; after a longer distance, the age is that of
 /// steady sliding.
-const LONGEST: f64 = 1e9;
+pub const LONGEST: f64 = 1e9;
 /// Ratio of the force to the direct effect `a` above which the inverse hyperbolic sine equals a
 /// logarithm.
-const FAR_ABOVE_CREEP: f64 = 40.0;
+pub const FAR_ABOVE_CREEP: f64 = 40.0;
 
 /// Rate-and-state law: friction depends on the speed and on the age of the contact.
 #[derive(Clone, Copy, Debug)]

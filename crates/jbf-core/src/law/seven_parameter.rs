@@ -33,7 +33,7 @@
 use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
-use crate::delay_line::DelayLine;
+use crate::delay_line::{self, DelayLine};
 use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
@@ -41,6 +41,12 @@ use crate::motion::JournalMotion;
 use crate::parameter::Start;
 use crate::path::{legs, Leg};
 use crate::real::Real;
+
+/// Longest inner step of a prediction, s; breakaway is resolved to one step.
+pub const LONGEST_STEP_S: f64 = 0.002;
+/// Number of points of the delay line of the speed; each step longer than `tau_L / (DELAY_POINTS - 4)` is
+/// a point.
+pub const DELAY_POINTS: usize = delay_line::POINTS;
 
 /// Seven-parameter model with presliding, Stribeck curve, frictional memory and rising static
 /// friction.
@@ -187,9 +193,8 @@ impl<T: Real> Law<T> for SevenParameter<T> {
         }
     }
 
-    /// Longest step, s; breakaway is resolved to one step.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
-        0.002
+        LONGEST_STEP_S
     }
 
     #[inline(always)]

@@ -2,12 +2,13 @@
 
 import jbf
 import numpy as np
+from jbf.export.drive_equations import DRIVE
 from jbf.export.equations import CONTACT, OTHER, TRANSMISSION
 from jbf.models.catalogue import built_in, built_in_laws, reason_not_applicable
 from joint_runs import JOINT, joint_runs
 
 BASE = {"F_c": 5.0, "F_s": 8.0, "v_s": 0.1, "F_v": 2.0, "sigma_0": 2e3, "sigma_1": 3.0, "v_d": 0.3}
-EFFECTS = ("presliding", *CONTACT, *OTHER, *TRANSMISSION)
+EFFECTS = ("presliding", *DRIVE, *CONTACT, *OTHER, *TRANSMISSION)
 
 
 def model_of(law: str, *effects: str) -> jbf.Model:

@@ -19,6 +19,7 @@ mod recorded_motion;
 mod share;
 mod trajectory;
 
+use jbf_core::effect::drive_compliance;
 use jbf_core::law::lugre::{self, LuGre};
 use jbf_core::law::seven_parameter::{self, SevenParameter};
 use jbf_core::law::{rate_and_state, Law};
@@ -31,6 +32,18 @@ use pyo3::prelude::*;
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;
+    m.add(
+        "DRIVE_COMPLIANCE_MOST_INNER_STEPS",
+        drive_compliance::MOST_INNER_STEPS,
+    )?;
+    m.add(
+        "DRIVE_COMPLIANCE_LONGEST_INNER_STEP",
+        drive_compliance::LONGEST_INNER_STEP,
+    )?;
+    m.add(
+        "DRIVE_COMPLIANCE_SHORTEST_STEP_S",
+        drive_compliance::SHORTEST_STEP_S,
+    )?;
     m.add("LUGRE_LONGEST_STEP_S", lugre::LONGEST_STEP_S)?;
     m.add("LUGRE_STEPS_PER_SAMPLE", LuGre::<f64>::ENOUGH_STEPS)?;
     m.add(

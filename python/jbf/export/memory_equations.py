@@ -27,7 +27,7 @@ class Memory:
         Assigns the variables at the start of a run, at the velocity `v`.
     advance
         Assigns the variables after a step of `dt_s`, in which the speed changes linearly from
-        `state.velocity` to `v` without a reversal.
+        `state.velocity` to `v`.
     rates
         For a solver of differential equations: initial value and time derivative of a variable.
     fixed
@@ -48,8 +48,11 @@ class Memory:
 
 FUNCTIONS = f'''
 def distance(state: State, v: real, dt_s: real) -> real:
-    """Distance of a step without a reversal."""
-    return 0.5 * dt_s * abs(state.velocity + v)
+    """Distance of a step in which the speed changes linearly."""
+    before = state.velocity
+    if before * v < 0.0:
+        return 0.5 * dt_s * (before * before + v * v) / (abs(before) + abs(v))
+    return 0.5 * dt_s * abs(before + v)
 
 
 def append(state: Out[State], speed: real, dt_s: real):

@@ -8,9 +8,8 @@ from typing import ClassVar
 
 from jbf import _core
 from jbf.errors import InputError
-from jbf.export.memory_equations import MEMORY
 from jbf.export.plain_c import check_equations, exact_terms
-from jbf.export.program import Program, law_equations, program
+from jbf.export.program import STATES, Program, law_equations, program
 from jbf.export.reference import BODY, Reference, force_of_effects
 from jbf.export.rumoca_run import NotSimulated, installed, run_rumoca
 from jbf.export.syntax import Syntax, local_types, wrapped
@@ -204,7 +203,7 @@ def write_modelica(reference: Reference, settings: Settings) -> Written:
     model = reference.machine
     check_equations(model, settings, "Modelica")
     for term in (model.law, *model.effects):
-        if term in MEMORY and not MEMORY[term].solvable:
+        if term in STATES and not STATES[term].solvable:
             raise InputError(
                 problem=f"the state of {term} switches and is not a differential equation",
                 remedy="fit without it, or export with --to fmu2 or fmu3 for Co-Simulation",

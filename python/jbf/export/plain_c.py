@@ -5,6 +5,7 @@ The core is not needed on the target. `equations` has its operations in its orde
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from importlib.resources import files as package_files
 
@@ -16,6 +17,7 @@ from jbf.errors import InputError
 from jbf.export.c_syntax import C
 from jbf.export.compensator import EQUATIONS, ROOTS
 from jbf.export.compiled import NoCompiler, run_c
+from jbf.export.drive_equations import DRIVE
 from jbf.export.equations import LAWS
 from jbf.export.ledger import Term
 from jbf.export.program import KNOWN, Program, program
@@ -87,6 +89,12 @@ def _program(model: Model, settings: Settings) -> Program:
             problem="the compensator is for rotary drives, and the rig is linear",
             remedy="export without --compensator",
         )
+    driven = [name for name in model.effects if name in DRIVE]
+    if driven:
+        raise InputError(
+            problem=f"the observer is for a rigid drive, and the model has {driven[0]}",
+            remedy="export without --compensator, or fit without the effect",
+        )
     added = (EQUATIONS, settings.compensator.constants())
     return program(model, (*FUNCTIONS, *ROOTS), added)
 
@@ -144,6 +152,13 @@ def check_equations(model: Model, settings: Settings, language: str) -> None:
                 problem=f"the effect {name} has no form in {language} without the core",
                 remedy="fit without the effect; for a built-in effect, jbf export --c writes C for "
                 "the core",
+            )
+    for name, parameter in model.parameters.items():
+        if not math.isfinite(parameter.value):
+            raise InputError(
+                key=name,
+                problem=f"is {parameter.value}, with which its effect vanishes",
+                remedy=f"fit without the effect {name.partition('.')[0]}",
             )
 
 

@@ -6,7 +6,8 @@ import ast
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from jbf.export import memory_equations
+from jbf.export import drive_equations, memory_equations
+from jbf.export.drive_equations import DIRECTION, DRIVE, RESIST
 from jbf.export.equations import (
     CONTACT,
     FUNCTIONS,
@@ -18,15 +19,17 @@ from jbf.export.equations import (
     Value,
 )
 from jbf.export.memory_equations import MEMORY, Memory
-from jbf.export.step_equations import BRISTLES, RIGID, SLOPES, STEP
+from jbf.export.step_equations import BRISTLES, LEGS, ONE_LEG, RIGID, SLOPES, STEP
 from jbf.models.catalogue import built_in
 from jbf.models.chain import MAX_STEP_S
 from jbf.models.model import Model
 
 MOTION = ("velocity", "acceleration", "position", "weight_offset", "load", "temperature")
 """Fields of a motion, without its time."""
-KNOWN = {*CONTACT, *OTHER, *TRANSMISSION, "presliding"}
+KNOWN = {*DRIVE, *CONTACT, *OTHER, *TRANSMISSION, "presliding"}
 """Effects with equations."""
+STATES = {**DRIVE, **MEMORY}
+"""States of laws and effects by name."""
 SOLVED = ("slopes", "settled")
 """Functions for a solver of differential equations."""
 
@@ -61,7 +64,7 @@ class Program:
 
 def memories(model: Model) -> list[Memory]:
     """States of the law and the effects of a model that are advanced before the friction."""
-    return [MEMORY[name] for name in (model.law, *model.effects) if name in MEMORY]
+    return [STATES[name] for name in (model.law, *model.effects) if name in STATES]
 
 
 def law_equations(model: Model) -> tuple[LawEquations, LawEquations]:
@@ -80,12 +83,22 @@ def equations(model: Model, compensated: bool) -> dict[str, list[ast.stmt]]:
     def of_effects(stage: Mapping[str, str]) -> str:
         return "\n".join(stage[name] for name in model.effects if name in stage)
 
+    driven = [name for name in model.effects if name in DRIVE]
+    drive = [
+        "state.direction = sign(place.velocity)",
+        *(f"{name}_step(state, place, dt_s / steps)" for name in driven),
+    ]
     texts = {
+        "drive": "\n".join(drive) if driven else "",
+        "direction_of_motion": DIRECTION if driven else "direction = sign(v)",
+        "resistance": RESIST if "drive_compliance" in driven else "",
         "friction_of_law": law.friction,
         "contact": of_effects(CONTACT),
         "other": of_effects(OTHER),
         "transmission": of_effects(TRANSMISSION),
         "force_of_contact": BRISTLES if bristles.states else RIGID,
+        "legs": LEGS if driven else ONE_LEG,
+        "one_leg": ONE_LEG,
         "bend": bristles.bend,
         "start_of_bristles": bristles.start,
         "slope_of_bristles": bristles.slope,
@@ -118,7 +131,14 @@ def program(
     _, bristles = law_equations(model)
     solver = SLOPES if "slopes" in roots else ""
     text = "\n".join(
-        [FUNCTIONS, memory_equations.FUNCTIONS, STEP, solver, added[0] if added else ""]
+        [
+            FUNCTIONS,
+            memory_equations.FUNCTIONS,
+            drive_equations.FUNCTIONS,
+            STEP,
+            solver,
+            added[0] if added else "",
+        ]
     )
     tree = ast.parse(text.replace("inner_steps()", _inner_steps(model)))
     fields = _Fields(memories(model))
@@ -134,6 +154,8 @@ def program(
     read = {n.attr for f in forces for n in ast.walk(f) if isinstance(n, ast.Attribute)}
     inputs = tuple(name for name in MOTION if name == "velocity" or name in read)
     variables = {n: _type(t) for memory in memories(model) for n, t in memory.variables.items()}
+    if any(name in DRIVE for name in model.effects):
+        variables["direction"] = ("real", 0)
     return Program(functions, constants, max(bristles.states, 1), inputs, variables, rates)
 
 
@@ -169,7 +191,7 @@ def _rates(model: Model, fields: _Fields) -> dict[str, tuple[ast.expr, ast.expr]
 def _inner_steps(model: Model) -> str:
     """Expression for the number of inner steps of a sample."""
     law, bristles = law_equations(model)
-    effects_remember = any(name in MEMORY for name in model.effects)
+    effects_remember = any(name in STATES for name in model.effects)
     if not law.longest_step_s and not bristles.states and not effects_remember:
         return "1.0"
     longest = min([MAX_STEP_S, *(built_in()[name].longest_step_s for name in model.effects)])

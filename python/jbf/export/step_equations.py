@@ -10,6 +10,7 @@ def act(state: Out[State], motion: Motion, dt_s: real):
         advance_memory()
     else:
         start_of_memory()
+    direction_of_motion()
     drag = 0.0
     extra = 0.0
     transmitted = 0.0
@@ -19,10 +20,11 @@ def act(state: Out[State], motion: Motion, dt_s: real):
     transmission()
     level = jump
     force_of_contact()
-    state.force = bent + smooth + drag * sign(v) + extra
+    state.force = bent + smooth + drag * direction + extra
     state.level = level
     state.velocity = v
     jump_of_force()
+    resistance()
 
 
 def towards(place: Out[Motion], before: Motion, after: Motion, fraction: real):
@@ -51,6 +53,7 @@ def between(state: Out[State], before: Motion, after: Motion, sample_s: real):
     place: Motion
     for k in range(1, count + 1):
         towards(place, before, after, real(k) / steps)
+        drive()
         act(state, place, dt_s / steps)
 
 
@@ -93,24 +96,48 @@ of the model."""
 BRISTLES = """
 if dt_s > 0.0:
     leg: Leg
-    leg.direction = sign(state.velocity + v)
-    leg.distance = abs(state.velocity + v) * (0.5 * dt_s)
-    leg.level0 = state.level
-    leg.level1 = level
-    bend()
+    legs()
 else:
     start_of_bristles()
 force_of_bristles()
 """
 """Force of a contact with bristles."""
 
-RIGID = "bent = level * sign(v)"
+ONE_LEG = """
+leg.direction = sign(state.velocity + v)
+leg.distance = abs(state.velocity + v) * (0.5 * dt_s)
+leg.level0 = state.level
+leg.level1 = level
+bend()
+"""
+"""Motion of the bristles in a step without a reversal."""
+
+LEGS = """
+if state.velocity * v < 0.0:
+    share = state.velocity / (state.velocity - v)
+    leg.direction = sign(state.velocity)
+    leg.distance = abs(state.velocity) * share * (0.5 * dt_s)
+    leg.level0 = state.level
+    leg.level1 = state.level + (level - state.level) * share
+    bend()
+    leg.direction = sign(v)
+    leg.distance = abs(v) * (1.0 - share) * (0.5 * dt_s)
+    leg.level0 = leg.level1
+    leg.level1 = level
+    bend()
+else:
+    one_leg()
+"""
+"""Motion of the bristles in a step of a driven side, which can reverse."""
+
+RIGID = "bent = level * direction"
 """Force of a contact without bristles."""
 
 SLOPES = '''
 def slopes(state: Out[State], motion: Motion) -> real:
     """Assign the time derivatives of the bristles, and return the force that resists the motion."""
     v = motion.velocity
+    direction = sign(v)
     drag = 0.0
     extra = 0.0
     transmitted = 0.0
@@ -121,7 +148,7 @@ def slopes(state: Out[State], motion: Motion) -> real:
     level = jump
     slope_of_bristles()
     force_of_bristles()
-    return bent + smooth + drag * sign(v) + extra
+    return bent + smooth + drag * direction + extra
 
 
 def settled(state: Out[State], motion: Motion):

@@ -166,11 +166,13 @@ def test_settings_out_of_range_are_refused() -> None:
             export.Compensator(**{**good, **wrong})
 
 
-def test_compensator_of_a_linear_axis_is_refused() -> None:
-    chosen = export.Compensator(1.0, 1.0, 1.0, 0.001, 60.0, 0.05)
-    model = jbf.Model(AXIS, "coulomb")
-    with pytest.raises(jbf.InputError):
-        export.to(model, "c", joint_runs(AXIS), settings=export.Settings(compensator=chosen))
+@pytest.mark.parametrize(
+    "model", [jbf.Model(AXIS, "coulomb"), model_of("coulomb", "backlash")], ids=["axis", "backlash"]
+)
+def test_compensator_of_a_linear_axis_or_a_loose_drive_is_refused(model: jbf.Model) -> None:
+    settings = export.Settings(compensator=export.Compensator(1.0, 1.0, 1.0, 0.001, 60.0, 0.05))
+    with pytest.raises(jbf.InputError, match=r"observer|rotary"):
+        export.to(model, "c", joint_runs(model.rig), settings=settings)
 
 
 def test_settings_are_read_from_a_file_and_wrong_keys_are_refused(tmp_path: Path) -> None:

@@ -245,6 +245,7 @@ def test_terminal_of_an_fmu_is_valid_and_has_output_and_inputs() -> None:
         MODELS["states"],
         jbf.Model(JOINT, "lugre", ["coulomb_drag"], VALUES),
         jbf.Model(JOINT, "lugre", ["warm_up"], VALUES),
+        jbf.Model(JOINT, "coulomb", ["presliding", "backlash"], {"presliding.sigma": 2e3}),
     ],
 )
 def test_model_exchange_is_not_offered_for_a_force_that_jumps(model: jbf.Model) -> None:

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from equation_models import model_of, models_with_many_effects, runs_with_all_columns
 from jbf import export
+from jbf.export.drive_equations import DRIVE
 from jbf.export.equations import LAWS
 from joint_runs import joint_runs
 
-SWITCHING = ("seven_parameter", "dwell_stiction")
+SWITCHING = ("seven_parameter", "dwell_stiction", *DRIVE)
 """Laws and effects whose state is not a differential equation."""
 rumoca = pytest.importorskip("rumoca", reason="needs rumoca: pip install rumoca")
 

@@ -150,7 +150,9 @@ def test_code_compiles_for_a_cortex_m4f_without_warnings(
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("law", ["stribeck", "lugre", "maxwell_slip"])
+@pytest.mark.parametrize(
+    "law", ["stribeck", "lugre", "maxwell_slip", "seven_parameter", "rate_and_state"]
+)
 def test_single_precision_agrees_to_its_rounding_errors(law: str, tmp_path: Path) -> None:
     model, run = model_of(law), runs_with_all_columns(0.005)[0]
     settings = export.Settings(precision="float")
@@ -193,6 +195,17 @@ def test_sample_that_is_not_later_or_not_finite_changes_nothing(tmp_path: Path) 
     assert run_program(exported, tmp_path, doubled).tolist() == plain.tolist()
 
 
+def test_driven_side_that_rings_and_reverses_within_a_step_gives_the_numbers_of_the_core(
+    tmp_path: Path,
+) -> None:
+    values = {"F_c": 5e-4, "F_s": 5e-4, "F_v": 0.0, "presliding.sigma": 100.0}
+    values |= {"drive_compliance.k": 60.0, "drive_compliance.c": 1e-4, "drive_compliance.J": 2e-3}
+    model = jbf.Model(JOINT, "coulomb", ["drive_compliance", "presliding"], values)
+    run = runs_with_all_columns(0.01)[0]
+    force = run_program(export.to(model, "c", [run]), tmp_path, export.record(model, run))
+    assert force.tolist() == model.predict(run).tolist()
+
+
 def test_time_and_distance_of_a_state_count_from_the_start_of_the_motion(tmp_path: Path) -> None:
     model, run = model_of("coulomb", "warm_up", "running_in"), runs_with_all_columns(0.01)[0]
     exported = export.to(model, "c", [run])
@@ -205,8 +218,8 @@ def test_time_and_distance_of_a_state_count_from_the_start_of_the_motion(tmp_pat
 @pytest.mark.parametrize(
     ("model", "settings"),
     [
-        (jbf.Model(JOINT, "coulomb", ["backlash"], {"backlash.gap": 0.01}), export.Settings()),
         (jbf.Model(jbf.Rig.thesis()), export.Settings()),
+        (jbf.Model(JOINT, "coulomb", ["presliding"]), export.Settings()),
         (jbf.Model(JOINT, "coulomb"), export.Settings(joint="left elbow")),
     ],
 )

@@ -25,10 +25,13 @@ use crate::real::Real;
 ///
 /// In a step of 5 ms, they resolve the oscillation of a journal without friction up to 230 Hz. The
 /// midpoint rule is also stable for a stiffer drive, but its oscillation is not resolved.
-const MOST_INNER_STEPS: f64 = 24.0;
+pub const MOST_INNER_STEPS: f64 = 24.0;
+
+/// Longest integration step, relative to sqrt(J/k).
+pub const LONGEST_INNER_STEP: f64 = 0.3;
 
 /// Shortest previous step from which a change of the resistance is extrapolated, s.
-const SHORTEST_STEP_S: f64 = 1e-12;
+pub const SHORTEST_STEP_S: f64 = 1e-12;
 
 /// Spring and damper between the encoder and the inertia of the journal.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +100,7 @@ impl<T: Real> DriveCompliance<T> {
             stiffness_n_m_rad: p.k,
             damping_n_m_s_rad: p.c,
             inertia_kg_m2: p.j,
-            inner_step_s: 0.3 * crate::root::sqrt(j / k),
+            inner_step_s: LONGEST_INNER_STEP * crate::root::sqrt(j / k),
         }
     }
 

@@ -66,12 +66,11 @@ def _write(reference: Reference, settings: Settings, version: int) -> Written:
 
 
 def _continuous(reference: Reference) -> bool:
-    """Whether the force is continuous in speed and bristle, so that Model Exchange is offered."""
+    """Whether the force is continuous in speed and states, so that Model Exchange is offered."""
     bristles = law_equations(reference.machine)[1] if reference.machine.law in LAWS else None
     if bristles is None or bristles.states != 1 or not bristles.continuous:
         return False
-    # Model Exchange has the bristle as its only state.
-    if any(memory.rates or not memory.solvable for memory in memories(reference.machine)):
+    if not all(memory.solvable for memory in memories(reference.machine)):
         return False
     return not set(JUMPING) & set(reference.machine.effects)
 
@@ -82,7 +81,11 @@ def _archive(
     """Texts of the archive by their paths."""
     inputs = made.program.inputs
     variables = {"force": _unit(reference, "force")} | {n: _unit(reference, n) for n in inputs}
-    states = int("slopes" in {f.name for f in made.program.functions})
+    sloped = "slopes" in {f.name for f in made.program.functions}
+    rates = {name: f"{name}_rate" for name in made.program.rates}
+    # Fields of the continuous states, and of their time derivatives.
+    fields = {"bristle[0]": "slope[0]", **rates} if sloped else {}
+    states = ["bristle", *rates] if sloped else []
     template = (
         package_files("jbf.export").joinpath(f"fmi{version}.c.txt").read_text(encoding="utf-8")
     )
@@ -96,7 +99,17 @@ def _archive(
     ]
     for name, text in {
         "COUNT": str(len(variables)),
-        "STATES": str(states),
+        "STATES": str(len(states)),
+        "CASES": "".join(
+            f"  if (i == {i}) {{\n    return &state->{name};\n  }}\n"
+            for i, name in enumerate(fields)
+            if i > 0
+        ),
+        "EVALUATED": "\n".join(
+            f"  now->value[VALUES + {2 * i + k}] = now->state.{name};"
+            for i, pair in enumerate(fields.items())
+            for k, name in enumerate(pair)
+        ),
         "GUID": identifier,
         "INPUTS": "\n".join(assignments),
         "DEFAULTS": "\n".join(defaults),
@@ -109,8 +122,8 @@ def _archive(
     }
     title = " + ".join([reference.model.law, *reference.machine.effects])
     describe = _description_2 if version == 2 else _description_3
-    if states:
-        variables |= dict.fromkeys(("bristle", "der(bristle)"), "")
+    for name in states:
+        variables |= dict.fromkeys((name, f"der({name})"), "")
     archive = {"modelDescription.xml": describe(made.prefix, title, identifier, variables)}
     if version == 3:
         archive["sources/buildDescription.xml"] = _build_description(made.prefix)
@@ -152,10 +165,10 @@ def _description_2(prefix: str, title: str, guid: str, variables: dict[str, str]
     ET.SubElement(ET.SubElement(structure, "Outputs"), "Unknown", index="1")
     unknown = [1]
     if "ModelExchange" in kinds:
-        count = len(variables)
         derivatives = ET.SubElement(structure, "Derivatives")
-        ET.SubElement(derivatives, "Unknown", index=str(count))
-        unknown += [count - 1, count]
+        for number in _derivatives(variables):
+            ET.SubElement(derivatives, "Unknown", index=str(number + 1))
+            unknown += [number, number + 1]
     initial = ET.SubElement(structure, "InitialUnknowns")
     for index in unknown:
         ET.SubElement(initial, "Unknown", index=str(index))
@@ -165,7 +178,12 @@ def _description_2(prefix: str, title: str, guid: str, variables: dict[str, str]
 def _kinds(variables: dict[str, str]) -> dict[str, dict[str, str]]:
     """Interfaces that an FMU offers, with their attributes."""
     stepped = {"CoSimulation": {"canHandleVariableCommunicationStepSize": "true"}}
-    return {"ModelExchange": {}, **stepped} if "bristle" in variables else stepped
+    return {"ModelExchange": {}, **stepped} if _derivatives(variables) else stepped
+
+
+def _derivatives(variables: dict[str, str]) -> list[int]:
+    """Value references of the time derivatives; each follows that of its state."""
+    return [i for i, name in enumerate(variables) if name.startswith("der(")]
 
 
 def _root(prefix: str, title: str, attributes: dict[str, str]) -> ET.Element:
@@ -194,12 +212,14 @@ def _variables(units: dict[str, str]) -> Iterator[tuple[dict[str, str], dict[str
         if reference == 0:
             common |= {"causality": "output", "initial": "calculated"}
             common["description"] = "force that resists the motion"
-        elif "bristle" in name:
+        elif name.startswith("der("):
             common |= {"causality": "local", "initial": "calculated"}
-            common["description"] = "force of the bristle, a continuous state"
-            if name == "der(bristle)":
-                common["description"] = "its time derivative"
-                real["derivative"] = str(reference - 1)
+            common["description"] = "its time derivative"
+            real["derivative"] = str(reference - 1)
+        elif f"der({name})" in units:
+            common |= {"causality": "local", "initial": "calculated"}
+            quantity = "force of the bristle" if name == "bristle" else name.replace("_", " ")
+            common["description"] = f"{quantity}, a continuous state"
         else:
             common |= {"causality": "input", "description": f"{name} of the drive"}
             real["start"] = str(DEFAULT_C if name == "temperature" else 0.0)
@@ -240,9 +260,9 @@ def _description_3(prefix: str, title: str, token: str, variables: dict[str, str
     ET.SubElement(structure, "Output", valueReference="0")
     unknown = [0]
     if "ModelExchange" in kinds:
-        count = len(variables)
-        ET.SubElement(structure, "ContinuousStateDerivative", valueReference=str(count - 1))
-        unknown += [count - 2, count - 1]
+        for number in _derivatives(variables):
+            ET.SubElement(structure, "ContinuousStateDerivative", valueReference=str(number))
+            unknown += [number - 1, number]
     for number in unknown:
         ET.SubElement(structure, "InitialUnknown", valueReference=str(number))
     return XML + xml_text(root)

@@ -73,10 +73,11 @@ def law_equations(model: Model) -> tuple[LawEquations, LawEquations]:
     return law, PRESLIDING if "presliding" in model.effects else law
 
 
-def equations(model: Model, compensated: bool) -> dict[str, list[ast.stmt]]:
+def equations(model: Model, compensated: bool, stepped: bool) -> dict[str, list[ast.stmt]]:
     """Statements of a model by the placeholder that they replace.
 
-    `compensated` adds the part of the force that jumps to the state, for a compensator.
+    `compensated` adds the part of the force that jumps to the state, for a compensator. `stepped`
+    adds the time derivatives of states that are not bristles, for code that also has steps.
     """
     law, bristles = law_equations(model)
 
@@ -105,6 +106,12 @@ def equations(model: Model, compensated: bool) -> dict[str, list[ast.stmt]]:
         "force_of_bristles": bristles.force if bristles.states else RIGID,
         "start_of_memory": "\n".join(memory.start for memory in memories(model)),
         "advance_memory": "\n".join(memory.advance for memory in memories(model)),
+        "rates": "\n".join(
+            f"{name}_rate = {rate}"
+            for memory in memories(model)
+            for name, (_, rate) in memory.rates.items()
+            if stepped
+        ),
         "jump_of_force": f"state.jump = {'drag' if bristles.states else 'level + drag'}"
         if compensated
         else "",
@@ -142,7 +149,7 @@ def program(
     )
     tree = ast.parse(text.replace("inner_steps()", _inner_steps(model)))
     fields = _Fields(memories(model))
-    tree = _Completed(equations(model, added is not None), fields).visit(tree)
+    tree = _Completed(equations(model, added is not None, "step" in roots), fields).visit(tree)
     available = {f.name: _without_unused(f) for f in tree.body if isinstance(f, ast.FunctionDef)}
     functions = tuple(_reachable(available, roots))
     known = {**constants_of(model), **(added[1] if added else {})}
@@ -154,6 +161,8 @@ def program(
     read = {n.attr for f in forces for n in ast.walk(f) if isinstance(n, ast.Attribute)}
     inputs = tuple(name for name in MOTION if name == "velocity" or name in read)
     variables = {n: _type(t) for memory in memories(model) for n, t in memory.variables.items()}
+    if solver and "step" in roots:
+        variables |= {f"{name}_rate": ("real", 0) for name in rates}
     if any(name in DRIVE for name in model.effects):
         variables["direction"] = ("real", 0)
     return Program(functions, constants, max(bristles.states, 1), inputs, variables, rates)
@@ -232,6 +241,7 @@ class _Fields(ast.NodeTransformer):
 
     def __init__(self, states: list[Memory]) -> None:
         names = [name for memory in states for name in memory.variables]
+        names += [f"{name}_rate" for memory in states for name in memory.rates]
         self.names = {"y": "bristle", "slope": "slope"} | {name: name for name in names}
         self.fixed = {name: value for memory in states for name, value in memory.fixed.items()}
         self.solved = False

@@ -148,6 +148,7 @@ def slopes(state: Out[State], motion: Motion) -> real:
     level = jump
     slope_of_bristles()
     force_of_bristles()
+    rates()
     return bent + smooth + drag * direction + extra
 
 

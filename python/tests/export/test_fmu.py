@@ -188,6 +188,14 @@ CONTINUOUS = {
         JOINT, "stribeck", ["presliding"],
         {"F_c": 5.0, "F_s": 8.0, "v_s": 0.1, "F_v": 2.0, "presliding.sigma": 2e3},
     ),
+    "states": jbf.Model(
+        JOINT, "lugre", ["running_in", "warm_up"],
+        VALUES | {"running_in.a": 0.5, "warm_up.a": 0.5, "warm_up.tau_s": 2.0},
+    ),
+    "age": jbf.Model(
+        JOINT, "rate_and_state", ["presliding"],
+        {"F_0": 5.0, "a": 0.2, "b": 0.5, "D_c": 0.02, "presliding.sigma": 2e3},
+    ),
 }  # fmt: skip
 
 
@@ -244,7 +252,6 @@ def test_terminal_of_an_fmu_is_valid_and_has_output_and_inputs() -> None:
         MODELS["axis"],
         MODELS["states"],
         jbf.Model(JOINT, "lugre", ["coulomb_drag"], VALUES),
-        jbf.Model(JOINT, "lugre", ["warm_up"], VALUES),
         jbf.Model(JOINT, "coulomb", ["presliding", "backlash"], {"presliding.sigma": 2e3}),
     ],
 )

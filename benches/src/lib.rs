@@ -52,11 +52,13 @@ pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain
 /// Motion U = 0.127 sin(t) of chapter 4 of Cohn (1998), in both directions, at `time_s`.
 pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
     let (sin, cos) = time_s.sin_cos();
-    Motion::at_rest(T::of(LOAD_N))
-        .with_time_s(T::of(time_s))
-        .with_velocity_m_s(T::of(0.127 * sin))
-        .with_acceleration_m_s2(T::of(0.127 * cos))
-        .with_angle_rad(T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m))
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(0.127 * sin),
+        acceleration_m_s2: T::of(0.127 * cos),
+        angle_rad: T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m),
+        ..Motion::at_rest(T::of(LOAD_N))
+    }
 }
 
 /// Samples of one period of [`two_way`], one per [`LOOP_STEP_S`].

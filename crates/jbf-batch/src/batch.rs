@@ -47,7 +47,7 @@ impl<F: Float> Batch<F> {
     /// Returns the states of the films at the start of a run, each under the load given to its
     /// law's constructor.
     pub fn start(&self) -> Films<F> {
-        let film = |law: &Journal<F>| law.start(law.nominal().load_n());
+        let film = |law: &Journal<F>| law.start(law.nominal().load_n);
         Films(self.laws.iter().map(film).collect())
     }
 

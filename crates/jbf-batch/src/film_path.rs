@@ -9,7 +9,7 @@
 //! results are identical bit for bit to an integration.
 
 use jbf_core::law::Law;
-use jbf_core::motion::JournalMotion;
+use jbf_core::JournalMotion;
 use jbf_core::{Friction, Real};
 
 /// State of the film at the end of a step, with its derivatives with respect to the two film

@@ -58,7 +58,7 @@ fn side_by_side(films: &[(Journal<f64>, &[FilmStep])]) -> Vec<Option<Vec<f64>>> 
     let laws = core::array::from_fn(|i| film(i).0);
     let starts = core::array::from_fn(|i| {
         let (law, steps) = film(i);
-        law.start(steps.first().map_or(law.nominal().load_n(), |s| s.load_n))
+        law.start(steps.first().map_or(law.nominal().load_n, |s| s.load_n))
     });
     let mut lanes = SideBySide::<Lane<f64>, LANES>::new(&laws, &starts);
     let mut paths: Vec<Vec<f64>> = films.iter().map(|f| vec![0.0; f.1.len()]).collect();

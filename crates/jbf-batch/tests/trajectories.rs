@@ -83,10 +83,11 @@ fn trajectories_of_sines_of_different_lengths_equal_single_ones() {
             same(&law(load_n), &runs, &Start::default(), tolerance);
         }
     }
-    let elsewhere = Start::default()
-        .with_eps(Some(0.5))
-        .with_phi_rad(1.0)
-        .with_time_s(-2.0);
+    let elsewhere = Start {
+        time_s: -2.0,
+        eps: Some(0.5),
+        phi_rad: 1.0,
+    };
     same(&law(104.0), &runs[..3], &elsewhere, 1e-6);
     same(&law(104.0), &runs[..1], &Start::default(), 1e-6);
 }

@@ -7,7 +7,7 @@ use crate::types::{clock, CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PA
 use core::ffi::{c_char, CStr};
 use core::{ptr, slice};
 use jbf_core::chain::State;
-use jbf_core::effect::{Effects, Rig, CATALOGUE};
+use jbf_core::effect::{Effects, CATALOGUE};
 use jbf_core::law::{Law, Named};
 use jbf_core::run::{predict, Record};
 use jbf_core::{Bearing, Chain, Motion, ParameterError, Real};
@@ -74,10 +74,10 @@ pub unsafe fn init<T: Real, L: Named<T>>(
         .and_then(|()| L::build(bearing.as_ref(), Some(load_n), values, clock))
     {
         Ok(law) => {
-            let chain = Chain {
-                law,
-                effects: Effects::NONE,
-                rig: Rig::on(bearing.as_ref()),
+            let chain = Chain::new(law).with_effects(Effects::NONE);
+            let chain = match &bearing {
+                Some(bearing) => chain.on(bearing),
+                None => chain,
             };
             ptr::write(model, chain);
             OK

@@ -63,16 +63,21 @@ pub struct CMotion<T> {
 
 impl<T: Real> From<&CMotion<T>> for Motion<T> {
     fn from(m: &CMotion<T>) -> Self {
-        let motion = Motion::at_rest(m.load_n)
-            .with_time_s(m.time_s)
-            .with_velocity_m_s(m.velocity_m_s)
-            .with_acceleration_m_s2(m.acceleration_m_s2)
-            .with_angle_rad(m.angle_rad)
-            .with_weight_offset_rad(m.weight_offset_rad);
+        let motion = Motion {
+            time_s: m.time_s,
+            velocity_m_s: m.velocity_m_s,
+            acceleration_m_s2: m.acceleration_m_s2,
+            angle_rad: m.angle_rad,
+            weight_offset_rad: m.weight_offset_rad,
+            ..Motion::at_rest(m.load_n)
+        };
         if m.temperature_c.value().is_nan() {
             motion
         } else {
-            motion.with_temperature_c(m.temperature_c)
+            Motion {
+                temperature_c: Some(m.temperature_c),
+                ..motion
+            }
         }
     }
 }

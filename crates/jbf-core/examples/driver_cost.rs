@@ -24,7 +24,10 @@ fn all<F: Film<f64, N>, const N: usize>(
     tolerance: f64,
     out: &mut [f64],
 ) -> Result<Cost, ParameterError> {
-    let start = Start::default().with_phi_rad(0.01);
+    let start = Start {
+        phi_rad: 0.01,
+        ..Start::default()
+    };
     let mut sum = Cost::default();
     for (omega, out) in OMEGAS_RAD_S.iter().zip(out.chunks_mut(SAMPLES)) {
         let step = TAU / omega / (SAMPLES - 1) as f64;

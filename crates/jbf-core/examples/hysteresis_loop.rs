@@ -15,11 +15,13 @@ const AMPLITUDE_M_S: f64 = 0.127;
 
 /// Imposed motion at a time; angle and acceleration follow from the speed.
 fn motion(time_s: f64) -> Motion<f64> {
-    Motion::at_rest(LOAD_N)
-        .with_time_s(time_s)
-        .with_velocity_m_s(AMPLITUDE_M_S * time_s.sin())
-        .with_acceleration_m_s2(AMPLITUDE_M_S * time_s.cos())
-        .with_angle_rad(AMPLITUDE_M_S * (1.0 - time_s.cos()) / Bearing::THESIS.radius_m)
+    Motion {
+        time_s,
+        velocity_m_s: AMPLITUDE_M_S * time_s.sin(),
+        acceleration_m_s2: AMPLITUDE_M_S * time_s.cos(),
+        angle_rad: AMPLITUDE_M_S * (1.0 - time_s.cos()) / Bearing::THESIS.radius_m,
+        ..Motion::at_rest(LOAD_N)
+    }
 }
 
 fn main() -> Result<(), ParameterError> {

@@ -13,10 +13,12 @@ use std::f64::consts::TAU;
 /// Imposed motion at a time: a stroke of 2 mm every two seconds.
 fn motion(time_s: f64) -> Motion<f64> {
     let (sin, cos) = (0.5 * TAU * time_s).sin_cos();
-    Motion::at_rest(1.0)
-        .with_time_s(time_s)
-        .with_velocity_m_s(1e-3 * 0.5 * TAU * sin)
-        .with_angle_rad(-1e-3 * cos) // on a linear axis the place, m
+    Motion {
+        time_s,
+        velocity_m_s: 1e-3 * 0.5 * TAU * sin,
+        angle_rad: -1e-3 * cos, // on a linear axis the place, m
+        ..Motion::at_rest(1.0)
+    }
 }
 
 /// Prints a table of the second period: forty rows, one every fifty steps.

@@ -57,7 +57,10 @@ fn main() -> Result<(), ParameterError> {
                 let difference = apart.fold(0.0, f64::max) / peak;
                 println!(
                     "{},{amplitude:.6},{omega:.6},{difference:.3e}",
-                    clock.name()
+                    match clock {
+                        Clock::Journal => "journal",
+                        Clock::Thesis => "thesis",
+                    }
                 );
             }
         }

@@ -58,7 +58,10 @@ impl VelocityController {
     /// Returns the torque, N m; `None` for a message that is not later than the previous one.
     fn on_joint_state(&mut self, message: &JointState) -> Option<f64> {
         let (state, first_ns) = self.run.get_or_insert_with(|| {
-            let motion = Motion::default().with_angle_rad(message.position_rad);
+            let motion = Motion {
+                angle_rad: message.position_rad,
+                ..Motion::default()
+            };
             (self.model.start(&motion), message.stamp_ns)
         });
         // Stamps relative to the first one: seconds since 1970 have no resolution of 1 ns in f64.
@@ -69,10 +72,12 @@ impl VelocityController {
         }
         // The model follows the desired velocity and the measured angle.
         let target_rad_s = target_rad_s(time_s);
-        let motion = Motion::default()
-            .with_time_s(time_s)
-            .with_velocity_m_s(target_rad_s)
-            .with_angle_rad(message.position_rad);
+        let motion = Motion {
+            time_s,
+            velocity_m_s: target_rad_s,
+            angle_rad: message.position_rad,
+            ..Motion::default()
+        };
         let predicted_n_m = self.model.step(state, &motion, dt_s);
         let feedforward_n_m = if self.compensated { predicted_n_m } else { 0.0 };
         Some(self.gain_n_m_s * (target_rad_s - message.velocity_rad_s) + feedforward_n_m)
@@ -111,10 +116,12 @@ fn main() -> Result<(), Error> {
                 }
                 largest_rad_s = largest_rad_s.max((target_rad_s(time_s) - velocity_rad_s).abs());
             }
-            let motion = Motion::default()
-                .with_time_s(time_s)
-                .with_velocity_m_s(velocity_rad_s)
-                .with_angle_rad(angle_rad);
+            let motion = Motion {
+                time_s,
+                velocity_m_s: velocity_rad_s,
+                angle_rad,
+                ..Motion::default()
+            };
             let resisting_n_m = joint.step(&mut contact, &motion, 1e-4);
             velocity_rad_s += 1e-4 * (torque_n_m - resisting_n_m) / INERTIA_KG_M2;
             angle_rad += 1e-4 * velocity_rad_s;

@@ -10,7 +10,7 @@
 use jbf_core::effect::sensor_lag::{self, SensorLag};
 use jbf_core::effect::{Effect, Rig};
 use jbf_core::law::stribeck::{self, Stribeck};
-use jbf_core::motion::JournalMotion;
+use jbf_core::JournalMotion;
 use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
 
 /// Wiper with the friction `F_w (1 + sin th)/2`, where `th` is the shaft angle.
@@ -41,12 +41,12 @@ fn main() -> Result<(), ParameterError> {
     let lag = SensorLag::new(sensor_lag::Parameters { tau_s: 0.05 })?;
     let bare = Chain::new(law).with(lag);
     let wiped = bare.with(Wiper { force_n: 2.0 });
-    let motion = |t: f64| {
-        Motion::default()
-            .with_time_s(t)
-            .with_velocity_m_s(0.127 * t.sin())
-            .with_acceleration_m_s2(0.127 * t.cos())
-            .with_angle_rad(10.0 * (1.0 - t.cos()))
+    let motion = |t: f64| Motion {
+        time_s: t,
+        velocity_m_s: 0.127 * t.sin(),
+        acceleration_m_s2: 0.127 * t.cos(),
+        angle_rad: 10.0 * (1.0 - t.cos()),
+        ..Motion::default()
     };
     let (mut a, mut b) = (bare.start(&motion(0.0)), wiped.start(&motion(0.0)));
     println!("time_s,bare_n,wiped_n");

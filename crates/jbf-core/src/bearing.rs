@@ -93,7 +93,7 @@ impl Bearing {
 
     /// Load number (dimensionless load) `Fb = C^2 F / (mu U_tr L^3)`, equation (3.1) of Cohn
     /// (1998).
-    pub fn load_number<T: Real>(&self, load_n: T, u_tr_m_s: T) -> T {
+    pub(crate) fn load_number<T: Real>(&self, load_n: T, u_tr_m_s: T) -> T {
         let l3 = self.length_m * self.length_m * self.length_m;
         let group = self.clearance_m * self.clearance_m / (self.viscosity_pa_s * l3);
         T::of(group) * load_n / u_tr_m_s
@@ -101,7 +101,7 @@ impl Bearing {
 
     /// Mass number (dimensionless mass) `mb = C^3 U_tr m / (mu L^3 R^2)`, equation (3.4) of Cohn
     /// (1998).
-    pub fn mass_number<T: Real>(&self, u_tr_m_s: T) -> T {
+    pub(crate) fn mass_number<T: Real>(&self, u_tr_m_s: T) -> T {
         let l3 = self.length_m * self.length_m * self.length_m;
         let c3 = self.clearance_m * self.clearance_m * self.clearance_m;
         let group = c3 * self.mass_kg / (self.viscosity_pa_s * l3 * self.radius_m * self.radius_m);
@@ -109,7 +109,7 @@ impl Bearing {
     }
 
     /// Factor `C R / L^2` of the viscous friction in equation (3.14) of Cohn (1998).
-    pub fn viscous_ratio(&self) -> f64 {
+    pub(crate) fn viscous_ratio(&self) -> f64 {
         self.radius_m * self.clearance_m / (self.length_m * self.length_m)
     }
 }

@@ -15,22 +15,3 @@ pub enum Clock {
     /// Time scale `tbar = t / (1 s)`.
     Thesis,
 }
-
-impl Clock {
-    /// Returns the name used in files and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Clock::Journal => "journal",
-            Clock::Thesis => "thesis",
-        }
-    }
-
-    /// Returns the time scale with this name, if there is one.
-    pub fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "journal" => Some(Clock::Journal),
-            "thesis" => Some(Clock::Thesis),
-            _ => None,
-        }
-    }
-}

@@ -38,13 +38,13 @@ const THESIS_POLYNOMIAL: [f64; 2] = [200.0, 20.0];
 
 impl BaseLaw<f64> {
     /// Position control of Cohn (1998), with `k1` and `k2` from Appendix E.
-    pub const THESIS_POSITION: Self = Self::Position {
+    pub(crate) const THESIS_POSITION: Self = Self::Position {
         angle_v_rad: 0.43764,
         speed_v_s_rad: -0.25164,
     };
 
     /// Velocity control of Cohn (1998), with `g` and `C` from Appendix D.
-    pub const THESIS_VELOCITY: Self = Self::Velocity {
+    pub(crate) const THESIS_VELOCITY: Self = Self::Velocity {
         speed_v_s_rad: 1.0,
         forward_v_s_rad: 0.295,
     };
@@ -109,7 +109,7 @@ impl BaseLaw<f64> {
     /// It is `C` in velocity control and `-k2` in position control, which uses the measured speed
     /// only.
     #[must_use]
-    pub fn forward_v_s_rad(&self) -> f64 {
+    pub(crate) fn forward_v_s_rad(&self) -> f64 {
         match *self {
             Self::Position { speed_v_s_rad, .. } => -speed_v_s_rad,
             Self::Velocity {
@@ -136,21 +136,9 @@ impl BaseLaw<f64> {
 }
 
 impl<T: Real> BaseLaw<T> {
-    /// Returns [`BaseLaw::THESIS_POSITION`] in this number type.
-    #[must_use]
-    pub fn thesis_position() -> Self {
-        BaseLaw::THESIS_POSITION.cast()
-    }
-
-    /// Returns [`BaseLaw::THESIS_VELOCITY`] in this number type.
-    #[must_use]
-    pub fn thesis_velocity() -> Self {
-        BaseLaw::THESIS_VELOCITY.cast()
-    }
-
     /// Returns the control error: controlled quantity minus its reference, rad or rad/s.
     #[inline]
-    pub fn error(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
+    pub(crate) fn error(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
         match self {
             Self::Position { .. } => angle_rad - target.value,
             Self::Velocity { .. } => velocity_rad_s - target.value,
@@ -159,7 +147,7 @@ impl<T: Real> BaseLaw<T> {
 
     /// Returns the output of the control law, V.
     #[inline]
-    pub fn output_v(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
+    pub(crate) fn output_v(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
         match *self {
             Self::Position {
                 angle_v_rad,
@@ -174,7 +162,7 @@ impl<T: Real> BaseLaw<T> {
 
     /// Returns the reference speed and acceleration of the target, rad/s and rad/s^2.
     #[inline]
-    pub fn reference(&self, target: &Target<T>) -> [T; 2] {
+    pub(crate) fn reference(&self, target: &Target<T>) -> [T; 2] {
         match self {
             Self::Position { .. } => [target.rate, T::ZERO],
             Self::Velocity { .. } => [target.value, target.rate],

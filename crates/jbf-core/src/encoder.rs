@@ -3,11 +3,6 @@
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
-/// Counts per radian of the encoder in Cohn (1998).
-pub const THESIS_COUNTS_PER_RAD: f64 = 2387.3;
-/// Number of bits of the encoder counter in Cohn (1998).
-pub const THESIS_BITS: u32 = 16;
-
 /// Conversion of encoder counts to radians, with roll-over and detection of jumps.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder<T> {

@@ -35,7 +35,7 @@ impl<T: Real> Friction<T> {
 
     /// Returns both parts multiplied by a factor, which may change the unit.
     #[inline]
-    pub fn times(&self, factor: T) -> Self {
+    pub(crate) fn times(&self, factor: T) -> Self {
         Self {
             jump: self.jump * factor,
             smooth: self.smooth * factor,

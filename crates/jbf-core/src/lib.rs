@@ -13,28 +13,28 @@
 extern crate std;
 
 // Foundations: numbers, names and errors.
-pub mod bearing;
+mod bearing;
 mod builder;
-pub mod clock;
+mod clock;
 mod delay_line;
 mod described;
-pub mod dual;
-pub mod error;
-pub mod film;
-pub mod friction;
-pub mod motion;
+mod dual;
+mod error;
+mod film;
+mod friction;
+mod motion;
 pub mod parameter;
 mod path;
-pub mod real;
+mod real;
 mod relaxation;
 mod root;
-pub mod transition;
+mod transition;
 
 // Friction laws, effects, and the chain that runs them.
 pub mod chain;
 pub mod effect;
 pub mod law;
-pub mod record;
+mod record;
 pub mod run;
 pub mod spec;
 
@@ -44,7 +44,7 @@ pub mod stepper;
 
 // Control loop: counter in, voltage out, and a simulated shaft for tests.
 pub mod compensator;
-pub mod control_law;
+mod control_law;
 pub mod controller;
 pub mod encoder;
 pub mod observer;
@@ -57,6 +57,9 @@ pub use clock::Clock;
 pub use dual::Dual;
 pub use error::{Error, ParameterError};
 pub use friction::Friction;
-pub use motion::Motion;
+pub use motion::{JournalMotion, Motion};
 pub use nalgebra;
 pub use real::Real;
+
+#[doc(hidden)]
+pub use real::sealed;

@@ -2,17 +2,16 @@
 
 use crate::real::Real;
 
-/// Imposed motion at one instant; create it with [`Motion::at_rest`] and set the quantities that
-/// differ from rest.
+/// Imposed motion at one instant; create it from [`Motion::at_rest`] with the quantities that differ
+/// from rest.
 ///
 /// ```
 /// use jbf_core::Motion;
-/// let turning = Motion::at_rest(104.0).with_time_s(2.0).with_velocity_m_s(0.02);
+/// let turning = Motion { time_s: 2.0, velocity_m_s: 0.02, ..Motion::at_rest(104.0) };
 /// assert_eq!((turning.load_n, turning.angle_rad), (104.0, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
 pub struct Motion<T> {
     /// Time since the start of the run, s.
     pub time_s: T,
@@ -57,62 +56,6 @@ impl<T: Real> Motion<T> {
         }
     }
 
-    /// Sets the time, s.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_time_s(mut self, time_s: T) -> Self {
-        self.time_s = time_s;
-        self
-    }
-
-    /// Sets the surface speed, m/s.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_velocity_m_s(mut self, velocity_m_s: T) -> Self {
-        self.velocity_m_s = velocity_m_s;
-        self
-    }
-
-    /// Sets the rate of change of the speed, m/s^2.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_acceleration_m_s2(mut self, acceleration_m_s2: T) -> Self {
-        self.acceleration_m_s2 = acceleration_m_s2;
-        self
-    }
-
-    /// Sets the shaft angle, rad.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_angle_rad(mut self, angle_rad: T) -> Self {
-        self.angle_rad = angle_rad;
-        self
-    }
-
-    /// Sets the angle of the weight minus the shaft angle, rad.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_weight_offset_rad(mut self, weight_offset_rad: T) -> Self {
-        self.weight_offset_rad = weight_offset_rad;
-        self
-    }
-
-    /// Sets the load on one bearing, N.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_load_n(mut self, load_n: T) -> Self {
-        self.load_n = load_n;
-        self
-    }
-
-    /// Sets the recorded temperature, C.
-    #[inline(always)]
-    #[must_use]
-    pub fn with_temperature_c(mut self, temperature_c: T) -> Self {
-        self.temperature_c = Some(temperature_c);
-        self
-    }
-
     /// Returns true if every quantity is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
@@ -127,7 +70,7 @@ impl<T: Real> Motion<T> {
 
     /// Converts to another number type, without derivatives.
     #[inline(always)]
-    pub fn cast<U: Real>(&self) -> Motion<U> {
+    pub(crate) fn cast<U: Real>(&self) -> Motion<U> {
         let cast = |value: T| U::of(value.value());
         Motion {
             time_s: cast(self.time_s),
@@ -146,7 +89,7 @@ impl<T: Real> Motion<T> {
     /// linear interpolation over a sample of 20 ms, the error would be one step of an encoder,
     /// which a stiff drive converts to a considerable force.)
     #[inline(always)]
-    pub fn towards(&self, other: &Self, fraction: T, radius_m: T) -> Self {
+    pub(crate) fn towards(&self, other: &Self, fraction: T, radius_m: T) -> Self {
         let line = |a: T, b: T| a + (b - a) * fraction;
         let dt_s = other.time_s - self.time_s;
         let bend = (other.velocity_m_s - self.velocity_m_s) * dt_s / radius_m;
@@ -215,7 +158,7 @@ impl<T: Real> JournalMotion<T> {
     /// At rest, it is the sign of the friction force, because the motion may start in either
     /// direction.
     #[inline(always)]
-    pub fn way(&self) -> T {
+    pub(crate) fn way(&self) -> T {
         if self.velocity_m_s == T::ZERO {
             self.direction.sign()
         } else {
@@ -226,7 +169,7 @@ impl<T: Real> JournalMotion<T> {
     /// Returns the sliding distance from this instant to `to`, m, for a linear speed; motion in
     /// both directions is added.
     #[inline(always)]
-    pub fn distance_m(&self, to: &Self, dt_s: T) -> T {
+    pub(crate) fn distance_m(&self, to: &Self, dt_s: T) -> T {
         let (v0, v1) = (self.velocity_m_s, to.velocity_m_s);
         let half = T::of(0.5) * dt_s;
         if crossing(v0, v1).is_some() {

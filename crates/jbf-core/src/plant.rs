@@ -87,7 +87,7 @@ impl Drive {
 
     /// Returns true if the damping and the input gain equal those of another drive.
     #[must_use]
-    pub fn has_same_dynamics(&self, other: &Self) -> bool {
+    pub(crate) fn has_same_dynamics(&self, other: &Self) -> bool {
         self.damping_1_s == other.damping_1_s && self.input_rad_s2_v == other.input_rad_s2_v
     }
 

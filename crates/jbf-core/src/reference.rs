@@ -24,25 +24,6 @@ pub enum Wave {
     Square,
 }
 
-impl Wave {
-    /// All waveforms.
-    pub const ALL: [Self; 3] = [Self::Sine, Self::Triangle, Self::Square];
-
-    /// Returns the name used in options.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Wave::Sine => "sine",
-            Wave::Triangle => "triangle",
-            Wave::Square => "square",
-        }
-    }
-
-    /// Returns the waveform with this name, if there is one.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|wave| wave.name() == name)
-    }
-}
-
 /// Value of a reference at one instant, with its rate of change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -95,7 +76,7 @@ impl Reference {
     }
 
     /// Returns the period, s.
-    pub fn period_s(&self) -> f64 {
+    pub(crate) fn period_s(&self) -> f64 {
         TAU / self.frequency_rad_s
     }
 

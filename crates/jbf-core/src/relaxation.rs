@@ -12,7 +12,7 @@ use crate::real::Real;
 /// Each formula would suffer from cancellation in the other case: in single precision, a
 /// temperature rise that is never negative would become negative.
 #[inline(always)]
-pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
+pub(crate) fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
     let gain = -(-ratio).exp_m1();
     if ratio.value() < 1.0 {
         y + (x[0] - y) * gain + (x[1] - x[0]) * lead(ratio, gain)

@@ -14,9 +14,9 @@ pub use crate::record::Record;
 /// It limits the time of a search with parameters outside the physical range. Explicit steps of
 /// this length are stable for films with rates up to 28,000 1/s. The eccentricity of a faster film
 /// is limited in each step, and its state reports the number of such steps.
-pub const SHORTEST_FILM_STEP_S: f64 = 1e-4;
+pub(crate) const SHORTEST_FILM_STEP_S: f64 = 1e-4;
 
-/// Largest rate of a film that steps of [`SHORTEST_FILM_STEP_S`] resolve, 1/s; see
+/// Largest rate of a film that the shortest inner step of a prediction (0.1 ms) resolves, 1/s; see
 /// [`film_rate_1_s`].
 pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 
@@ -24,7 +24,7 @@ pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 /// most `max_step_s`.
 ///
 /// `sink` receives the index of each sample and its reading. The inner steps are shorter if the law
-/// requires it, down to [`SHORTEST_FILM_STEP_S`], and end at every reversal. For a motion that
+/// requires it, down to 0.1 ms, and end at every reversal. For a motion that
 /// starts or stops between two samples, the record must contain a sample at that instant; otherwise
 /// the motion starts or stops at the next sample.
 ///

@@ -1,47 +1,13 @@
-//! Tests of constructors: the original form (3.15) of the asperity stiffness, and errors with
-//! parameter, value and rule.
+//! Tests of constructors: errors with parameter, value and rule.
 
 mod common;
 
 use jbf_core::effect::{Effects, CATALOGUE};
-use jbf_core::law::journal::{k0_from_original, Journal, Parameters};
+use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Chain, Clock, Error, Motion};
 
 fn build(bearing: Bearing, load_n: f64, p: Parameters<f64>) -> Result<(), Error> {
     Journal::new(&bearing, load_n, &p, Clock::Journal).map(|_| ())
-}
-
-/// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` equals `K0 (eps - eps_tr)`.
-#[test]
-fn stiffness_converted_from_the_original_form_gives_the_same_line() {
-    let eps_tr = 0.9723504945734831;
-    let (kappa0, eps_b) = (18_000.0, 0.9995);
-    let k0 = k0_from_original(kappa0, eps_b, eps_tr).expect("valid");
-    for eps in [0.975, 0.98, 0.99] {
-        let original = kappa0 * (eps - eps_tr) / (eps_b - eps_tr);
-        assert!((k0 * (eps - eps_tr) / original - 1.0).abs() < 1e-14);
-    }
-    // Conversely: the eps_b that gives Table 4.2 its K0.
-    let eps_b = eps_tr + 18_000.0 / 7.5e5;
-    assert!(
-        (k0_from_original(18_000.0, eps_b, eps_tr).expect("valid") / 7.5e5 - 1.0).abs() < 1e-12
-    );
-}
-
-#[test]
-fn invalid_value_of_the_original_form_is_refused_by_name() {
-    for (kappa0, eps_b, name) in [
-        (0.0, 0.999, "kappa0"),
-        (-1.0, 0.999, "kappa0"),
-        (f64::NAN, 0.999, "kappa0"),
-        (f64::INFINITY, 0.999, "kappa0"),
-        (1e4, 0.97, "eps_b"),
-        (1e4, 1.0, "eps_b"),
-        (1e4, f64::NAN, "eps_b"),
-    ] {
-        let error = k0_from_original(kappa0, eps_b, 0.972).expect_err(name);
-        assert_eq!(error.name(), name);
-    }
 }
 
 #[test]

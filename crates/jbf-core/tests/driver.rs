@@ -73,7 +73,7 @@ fn errors<F: Film<f64, N>, const N: usize>(film: &F, run: &Run, tolerance: f64) 
         } else {
             sample.coefficient - f
         };
-        let all = [df, sample.eps - eps, sample.phi_rad() - phi];
+        let all = [df, sample.eps - eps, sample.xy.y.atan2(sample.xy.x) - phi];
         for (w, e) in worst.iter_mut().zip(all) {
             *w = w.max(e.abs());
         }
@@ -350,7 +350,10 @@ fn invalid_argument_of_a_trajectory_is_refused_by_name() {
             .name(),
         "time_s"
     );
-    let start = Start::default().with_eps(Some(1.5));
+    let start = Start {
+        eps: Some(1.5),
+        ..Start::default()
+    };
     let refused = follow(&film, &motion, &start, &[1.0], 1e-6, |_, _| {});
     assert_eq!(refused.expect_err("refused").name(), "eps");
     assert!(trajectory(&film, &motion, &[], 1e-6, &mut out).is_ok());

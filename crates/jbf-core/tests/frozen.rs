@@ -9,7 +9,7 @@ mod common;
 
 use common::bench::{self, Control, COUNTS_PER_RAD, DRIVE, DT_S, LOAD_N};
 use common::chain_round;
-use jbf_core::compensator::model::{ChainModel, FrictionModel};
+use jbf_core::compensator::{ChainModel, FrictionModel};
 use jbf_core::compensator::{LawModel, Observed};
 use jbf_core::controller::Status;
 use jbf_core::law::coulomb::Coulomb;

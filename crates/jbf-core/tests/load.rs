@@ -18,7 +18,7 @@ fn friction_after_a_change_of_load_is_that_of_the_new_load() {
         heavy.advance_with(&Rk4, &mut state, [speed(i); 3], 1.0, 0.002);
     }
     heavy.set_load(&mut state, 83.5);
-    assert_eq!(state.eps_tr(), light.nominal().eps_tr);
+    assert_eq!(state.loaded.eps_tr, light.nominal().eps_tr);
     let xy = state.xy();
     let mut own = State::at(xy.norm(), xy.y.atan2(xy.x), light.nominal());
     for i in 500..1500 {

@@ -7,7 +7,7 @@ use jbf_core::effect::sensor_lag::SensorLag;
 use jbf_core::effect::{Effect, Effects};
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::Law;
-use jbf_core::motion::JournalMotion;
+use jbf_core::JournalMotion;
 use jbf_core::{Chain, Motion, Real};
 use std::mem::size_of;
 

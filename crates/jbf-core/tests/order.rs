@@ -37,7 +37,7 @@ fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> Vector2<f64> {
     let law = JournalFull::<f64>::new(&Bearing::THESIS, LOAD_N, &table_4_2(), Clock::Journal)
         .expect("valid");
     let steady = law.reduced().steady(0.025).expect("a speed");
-    let mut state = journal_full::State::at(steady.eps, steady.phi_rad, law.under(LOAD_N));
+    let mut state = journal_full::State::at(steady.eps, steady.phi_rad, law.reduced().nominal());
     // The rates settle first, in steps that do not depend on `step_s`.
     for _ in 0..100 {
         law.advance_with(&Rodas5P, &mut state, [0.03; 3], 1.0, 1e-5);
@@ -46,7 +46,7 @@ fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> Vector2<f64> {
         law.advance_with(stepper, &mut state, speed, 1.0, h);
     });
     assert_eq!(state.clamped, 0);
-    state.xy()
+    state.xy
 }
 
 fn steps(step_s: f64, swing: f64, mut advance: impl FnMut([f64; 3], f64)) {

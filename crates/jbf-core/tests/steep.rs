@@ -7,7 +7,7 @@ mod common;
 
 use common::bench::{self, Control, COUNTS_PER_RAD, DRIVE, DT_S, LOAD_N};
 use common::chain_round;
-use jbf_core::compensator::model::LawModel;
+use jbf_core::compensator::LawModel;
 use jbf_core::compensator::Observed;
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::{Law, Named};

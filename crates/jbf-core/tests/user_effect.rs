@@ -16,7 +16,7 @@ use jbf_core::effect::presliding::{self, Presliding};
 use jbf_core::effect::sensor_lag::SensorLag;
 use jbf_core::effect::thermal_thinning::ThermalThinning;
 use jbf_core::effect::{Effect, Effects, Named, Rig};
-use jbf_core::{Bearing, Chain, Clock};
+use jbf_core::{Bearing, Chain, Clock, Motion};
 
 type Drive = DriveCompliance<f64>;
 type Oil = ThermalThinning<f64>;
@@ -39,7 +39,10 @@ fn run(effects: impl Effect<f64>) -> Vec<f64> {
         rig,
     };
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
-    let motion = |t: f64| sines.at(t).with_load_n(100.0 + 20.0 * (0.7 * t).sin());
+    let motion = |t: f64| Motion {
+        load_n: 100.0 + 20.0 * (0.7 * t).sin(),
+        ..sines.at(t)
+    };
     let mut state = chain.start(&motion(0.0));
     let mut out = vec![state.reading_n];
     for i in 1..=700 {
@@ -71,7 +74,7 @@ fn catalogue(list: &[(&str, Vec<f64>)]) -> Vec<f64> {
 fn acts_alike<P: Named<f64>>() {
     let named = catalogue(&[page::<P>()]);
     assert_eq!(run(typed::<P>()), named, "{} alone", P::INFO.name);
-    let beside = Effects::NONE.with(typed::<P>());
+    let beside = (Effects::NONE, typed::<P>());
     assert_eq!(run(beside), named, "{} beside none", P::INFO.name);
     assert_eq!(run(Some(typed::<P>())), named, "{} there", P::INFO.name);
     assert_ne!(named, run(()), "{} does something", P::INFO.name);
@@ -116,13 +119,13 @@ fn order_of_user_effects_does_not_change_the_readings() {
         (typed::<Drive>(), typed::<Load>()),
         (typed::<Film>(), (typed::<Bristle>(), typed::<Other>())),
     );
-    assert_eq!(run(half.with(rest)), named);
+    assert_eq!(run((half, rest)), named);
 }
 
 #[test]
 fn empty_set_of_user_effects_changes_no_bit() {
     assert_eq!(run(()), run(Effects::NONE));
-    assert_eq!(run(Effects::NONE.with(())), run(()));
+    assert_eq!(run((Effects::NONE, ())), run(()));
     assert_eq!(run(None::<Other>), run(()));
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let bare = readings(&common::chain::<f64>(&[]), 0.01, 700, |t| sines.at(t));

@@ -5,7 +5,7 @@ mod common;
 
 use common::{bench, chain, chain_round, readings};
 use jbf_core::compensator::learning::Learned;
-use jbf_core::compensator::table::{Axis, Table};
+use jbf_core::compensator::{Axis, Table};
 use jbf_core::compensator::{Compensator, Input};
 use jbf_core::law::Law;
 use jbf_core::parameter::{Bound, Start};

@@ -4,7 +4,7 @@
 use crate::model::{FilmPath, Model};
 use crate::run::Run;
 use jbf_batch::{Baseline, InstructionSet, Simd};
-use jbf_core::record::Record;
+use jbf_core::run::Record;
 use jbf_core::{Dual, ParameterError, Real};
 
 /// Number of parameters in the shortest pass, usually those of a law.

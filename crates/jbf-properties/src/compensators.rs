@@ -3,14 +3,14 @@
 use crate::bytes::{between, clock, effects, number, parameters};
 use arbitrary::{Result, Unstructured};
 use jbf_core::compensator::learning::{self, Learned, Rule};
-use jbf_core::compensator::model::ChainModel;
 use jbf_core::compensator::observed::{self, Settings};
 use jbf_core::compensator::repetitive::Repetitive;
-use jbf_core::compensator::table::Axis;
+use jbf_core::compensator::Axis;
+use jbf_core::compensator::ChainModel;
 use jbf_core::compensator::{
     Compensator, Coulomb, LawModel, Learning, NoCompensation, Observed, Table,
 };
-use jbf_core::control_law::BaseLaw;
+use jbf_core::controller::BaseLaw;
 use jbf_core::effect::Effects;
 use jbf_core::law::journal::{self, Journal};
 use jbf_core::law::{self, with_law, Named, Visitor};
@@ -58,7 +58,8 @@ fn plain<T: Real>(
                 return Ok(());
             };
             let start_v = T::of(number(bytes, 1e3)?);
-            let coulomb = Coulomb::<T>::new(observer, &rig.drive).resumed(start_v);
+            let mut coulomb = Coulomb::<T>::new(observer, &rig.drive);
+            coulomb.start_v = start_v;
             then.with(bytes, "coulomb", coulomb)
         }
         2 => {

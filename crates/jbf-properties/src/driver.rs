@@ -66,9 +66,11 @@ pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     } else {
         None
     };
-    let start = Start::default()
-        .with_eps(eps)
-        .with_phi_rad(between(bytes, -3.2, 3.2)?);
+    let start = Start {
+        eps,
+        phi_rad: between(bytes, -3.2, 3.2)?,
+        ..Start::default()
+    };
     let tolerance = between(bytes, 1e-12, 1.0)?;
     let spacing_s = between(bytes, 1e-4, 0.3)?;
     let times_s: [f64; SAMPLES] = core::array::from_fn(|i| spacing_s * i as f64);

@@ -9,7 +9,7 @@ use core::ffi::{c_char, CStr};
 use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
 use jbf_c::{CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PARAMETER};
-use jbf_core::effect::{self, Effects, Rig};
+use jbf_core::effect::{self, Effects};
 use jbf_core::law::{self, Named};
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 
@@ -106,7 +106,11 @@ macro_rules! laws {
                     (NAME, None) => return Ok(()),
                     (code, built) => panic!("{}: {code} where the core says {built:?}", page.name),
                 };
-                let mut chain = Chain { law, effects: Effects::NONE, rig: Rig::on(shaft) };
+                let chain = Chain::new(law).with_effects(Effects::NONE);
+                let mut chain = match shaft {
+                    Some(bearing) => chain.on(bearing),
+                    None => chain,
+                };
                 for _ in 0..bytes.int_in_range(0..=3)? {
                     effect(bytes, model, &mut chain, &page)?;
                 }

@@ -7,8 +7,8 @@ use arbitrary::{Result, Unstructured};
 use core::cell::Cell;
 use jbf_core::effect::Effects;
 use jbf_core::law::{self, with_law, Law, Named, Scales, Visitor};
-use jbf_core::motion::JournalMotion;
 use jbf_core::plant::{Drive, Plant};
+use jbf_core::JournalMotion;
 use jbf_core::{Bearing, Chain, Friction, Real};
 
 /// Largest load, N.

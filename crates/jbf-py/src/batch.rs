@@ -1,5 +1,6 @@
 //! Python class for the parallel evaluation of many parameter sets of the journal law.
 
+use crate::names;
 use crate::pool::on_pool;
 use jbf_batch::{Batch, Float, Method, Speeds};
 use jbf_core::law::journal::{Journal, Parameters};
@@ -48,8 +49,7 @@ impl BatchRig {
             .with_viscosity_pa_s(viscosity_pa_s);
         Ok(Self {
             bearing: bearing.checked().map_err(wrong)?,
-            clock: Clock::from_name(clock)
-                .ok_or_else(|| wrong(format!("clock {clock:?} is not known: journal or thesis")))?,
+            clock: names::clock(clock)?,
             method: match method {
                 "euler" => Method::Euler,
                 "rk4" => Method::Rk4,

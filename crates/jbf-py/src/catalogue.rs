@@ -1,5 +1,6 @@
 //! Catalogues of laws and effects, as lists of dictionaries.
 
+use crate::names;
 use jbf_core::effect::{Parameter, CATALOGUE};
 use jbf_core::law;
 use pyo3::prelude::*;
@@ -38,12 +39,12 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("equation", info.equation)?;
         d.set_item("source", info.source)?;
         d.set_item("limits", info.limits)?;
-        let needs: Vec<&str> = info.needs.iter().map(|n| n.name()).collect();
+        let needs: Vec<&str> = info.needs.iter().map(|&n| names::need(n)).collect();
         d.set_item("needs", needs)?;
         let refused = PyDict::new(py);
         for law in law::CATALOGUE {
             if let Some(need) = info.lacking(law) {
-                refused.set_item(law.name, need.why_not())?;
+                refused.set_item(law.name, names::why_not(need))?;
             }
         }
         d.set_item("refused", refused)?;

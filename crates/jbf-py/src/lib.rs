@@ -14,6 +14,7 @@ mod filter;
 mod instrument;
 mod motion;
 mod motion_errors;
+mod names;
 mod pool;
 mod recorded_motion;
 mod share;

@@ -2,9 +2,10 @@
 
 mod lanes;
 
+use crate::names;
 use crate::pool::on_pool;
 use jbf_core::driver::{follow, Cost, Film, Sample, Sampled, Sine, Start};
-use jbf_core::law::journal::{Journal, Parameters, START_PHI_RAD};
+use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock, Dual, ParameterError, Real};
 use numpy::ndarray::Array2;
@@ -153,10 +154,11 @@ impl Asked {
         runs: &[Run],
     ) -> Result<Vec<Result1>, ParameterError> {
         let (load_n, clock) = (self.load_n, self.clock);
-        let start = Start::default()
-            .with_time_s(self.start_time_s)
-            .with_eps(self.start_eps.map(T::of))
-            .with_phi_rad(T::of(self.start_phi_rad));
+        let start = Start {
+            time_s: self.start_time_s,
+            eps: self.start_eps.map(T::of),
+            phi_rad: T::of(self.start_phi_rad),
+        };
         if self.with_inertia {
             let film = JournalFull::new(&self.bearing, load_n, parameters, clock)?;
             all(&film, runs, &start, self.tolerance)
@@ -206,9 +208,7 @@ pub fn trajectories<'py>(
         .with_mass_kg(mass_kg)
         .with_count(count)
         .with_viscosity_pa_s(viscosity_pa_s);
-    let clock = Clock::from_name(clock).ok_or_else(|| {
-        PyValueError::new_err(format!("clock {clock:?} is not known: journal or thesis"))
-    })?;
+    let clock = names::clock(clock)?;
     if !["journal", "journal_full"].contains(&model) {
         return Err(PyValueError::new_err(format!(
             "model {model:?} is not known: journal or journal_full"
@@ -221,7 +221,7 @@ pub fn trajectories<'py>(
         with_inertia: model == "journal_full",
         start_time_s: start_time_s.unwrap_or(0.0),
         start_eps,
-        start_phi_rad: start_phi_rad.unwrap_or(START_PHI_RAD),
+        start_phi_rad: start_phi_rad.unwrap_or(Start::<f64>::default().phi_rad),
         tolerance,
     };
     let runs: Vec<Run> = runs

@@ -5,9 +5,9 @@
 use crate::hash::Hash;
 use crate::shaft::{asked, Shaft, COUNTS_PER_RAD, DRIVE, LOOP_STEPS, LOOP_STEP_S};
 use jbf_core::compensator::learning::{self, Learned, Learning, Rule};
-use jbf_core::compensator::model::{ChainModel, FrictionModel, LawModel};
 use jbf_core::compensator::observed::{Observed, Settings};
-use jbf_core::compensator::table::{Axis, Table};
+use jbf_core::compensator::{Axis, Table};
+use jbf_core::compensator::{ChainModel, FrictionModel, LawModel};
 use jbf_core::compensator::{Compensator, Coulomb, NoCompensation, Repetitive};
 use jbf_core::controller::{BaseLaw, Controller, Limits};
 use jbf_core::effect::presliding::{self, Presliding};
@@ -15,6 +15,7 @@ use jbf_core::encoder::Encoder;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::observer::{CoulombObserver, VelocityObserver};
+use jbf_core::plant::Drive;
 use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
 
 const LOAD_N: f64 = 104.0;
@@ -38,9 +39,9 @@ pub fn around<T: Real, C: Compensator<T>>(
     position: bool,
 ) -> Result<Controller<T, C>, ParameterError> {
     let law = if position {
-        BaseLaw::thesis_position()
+        BaseLaw::position(&Drive::THESIS).cast()
     } else {
-        BaseLaw::thesis_velocity()
+        BaseLaw::velocity(&Drive::THESIS).cast()
     };
     Controller::new(
         Encoder::new(COUNTS_PER_RAD, 16, 100.0, LOOP_STEP_S)?,

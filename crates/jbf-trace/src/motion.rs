@@ -41,11 +41,13 @@ pub fn motions<T: Real>() -> impl Iterator<Item = Motion<T>> {
         }
         angle_rad += 0.5 * STEP_S * (before_m_s + speed) / Bearing::THESIS.radius_m;
         before_m_s = speed;
-        Motion::at_rest(T::of(if i < JUMP.0 { JUMP.1 } else { JUMP.2 }))
-            .with_time_s(T::of(time_s))
-            .with_velocity_m_s(T::of(speed))
-            .with_acceleration_m_s2(T::of(rate))
-            .with_angle_rad(T::of(angle_rad))
-            .with_temperature_c(T::of(FIRST_C + RISE_C_S * time_s))
+        Motion {
+            time_s: T::of(time_s),
+            velocity_m_s: T::of(speed),
+            acceleration_m_s2: T::of(rate),
+            angle_rad: T::of(angle_rad),
+            temperature_c: Some(T::of(FIRST_C + RISE_C_S * time_s)),
+            ..Motion::at_rest(T::of(if i < JUMP.0 { JUMP.1 } else { JUMP.2 }))
+        }
     })
 }

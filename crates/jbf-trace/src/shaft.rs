@@ -10,7 +10,6 @@
 //! A step is implicit in F, so that the shaft sticks. The model is as simple as possible, because a
 //! microcontroller runs it between the steps of the loop under test.
 
-use jbf_core::encoder::THESIS_COUNTS_PER_RAD;
 use jbf_core::plant::Drive;
 use jbf_core::reference::{Reference, Target, Wave};
 use jbf_core::Real;
@@ -27,7 +26,7 @@ const PART: u32 = 1000;
 /// Drive of Cohn (1998), with the friction scale for which the friction of these loops was fitted.
 pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.02827);
 /// Counts per radian of the encoder; its counter has 16 bits.
-pub const COUNTS_PER_RAD: f64 = THESIS_COUNTS_PER_RAD;
+pub const COUNTS_PER_RAD: f64 = 2387.3;
 
 /// Friction level at rest under the nominal load, V.
 const LEVEL_V: f64 = 0.7;

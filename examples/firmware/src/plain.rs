@@ -32,12 +32,13 @@ impl Plain {
             gamma: 33.0,
         };
         let law = Journal::<f32>::new(&Bearing::THESIS, 104.0, &p, Clock::Thesis)?;
-        let loaded = law.nominal();
+        let (loaded, b) = (law.nominal(), Bearing::THESIS);
+        let ratio = b.radius_m * b.clearance_m / (b.length_m * b.length_m);
         Ok(Self {
             load_number: loaded.load_number,
             eps_tr: loaded.eps_tr,
             p,
-            viscous: p.gamma * Bearing::THESIS.viscous_ratio() as f32 * 2.0 * PI,
+            viscous: p.gamma * ratio as f32 * 2.0 * PI,
             eps: loaded.eps_tr,
             phi: 0.15,
         })

@@ -13,8 +13,8 @@ use panic_halt as _;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
-    use jbf_core::compensator::model::ChainModel;
     use jbf_core::compensator::observed::Settings;
+    use jbf_core::compensator::ChainModel;
     use jbf_core::compensator::{Compensator, Observed};
     use jbf_core::controller::{BaseLaw, Controller, Limits, State, Status};
     use jbf_core::encoder::Encoder;

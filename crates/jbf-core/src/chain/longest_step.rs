@@ -45,8 +45,11 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         let Some(all) = record.temperature_c else {
             return [[1.0; 2]; 2];
         };
-        let mut rest = first.with_velocity_m_s(T::ZERO);
-        rest.temperature_c = None;
+        let rest = Motion {
+            velocity_m_s: T::ZERO,
+            temperature_c: None,
+            ..*first
+        };
         let rate_of = |motion: &Motion<T>| {
             let mut rate = T::ONE;
             let journal = JournalMotion::from(motion);
@@ -60,7 +63,10 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
                 [low.min(c), high.max(c)]
             });
         ends.map(|c| {
-            let motion = rest.with_temperature_c(T::of(c));
+            let motion = Motion {
+                temperature_c: Some(T::of(c)),
+                ..rest
+            };
             let mut factor = T::ONE;
             let journal = JournalMotion::from(&motion);
             self.effects.lubricant(states, &journal, &mut factor);

@@ -33,14 +33,6 @@ impl<T: Real> Coulomb<T> {
             start_v: T::ZERO,
         }
     }
-
-    /// Starts from the friction level (V) that an earlier run estimated, limited to the range of
-    /// the observer.
-    #[must_use]
-    pub fn resumed(mut self, level_v: T) -> Self {
-        self.start_v = level_v;
-        self
-    }
 }
 
 impl<T: Real> Compensator<T> for Coulomb<T> {

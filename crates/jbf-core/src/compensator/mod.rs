@@ -4,19 +4,19 @@
 //! The compensator contains the configuration, and `State` the variables. [`crate::controller`]
 //! runs a compensator in a loop.
 
-pub mod coulomb;
+mod coulomb;
 pub mod learning;
-pub mod model;
+mod model;
 pub mod observed;
 pub mod repetitive;
-pub mod table;
+mod table;
 
 pub use coulomb::Coulomb;
 pub use learning::Learning;
-pub use model::{FrictionModel, LawModel};
+pub use model::{ChainModel, FrictionModel, LawModel};
 pub use observed::Observed;
 pub use repetitive::Repetitive;
-pub use table::Table;
+pub use table::{Axis, Table};
 
 use crate::real::Real;
 
@@ -61,7 +61,7 @@ pub struct Output<T> {
 impl<T: Real> Output<T> {
     /// Creates an output of zero.
     #[must_use]
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self {
             sum_v: T::ZERO,
             friction_v: T::ZERO,

@@ -22,15 +22,6 @@ impl Status {
     /// The control law acts alone, without compensation.
     pub const FALLBACK: Self = Self(16);
 
-    /// All flags with the names used in logs and options.
-    pub const NAMED: [(&'static str, Self); 5] = [
-        ("saturated", Self::SATURATED),
-        ("frozen", Self::FROZEN),
-        ("jumped", Self::JUMPED),
-        ("not_finite", Self::NOT_FINITE),
-        ("fallback", Self::FALLBACK),
-    ];
-
     /// Returns true if any flag of `other` is set in `self`.
     #[inline]
     pub const fn has(self, other: Self) -> bool {

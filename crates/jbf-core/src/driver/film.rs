@@ -5,22 +5,19 @@ use crate::law::journal::film_linear::SmoothFilm;
 use crate::law::journal::Journal;
 use crate::law::journal_full::motion::FullFilm;
 use crate::law::journal_full::JournalFull;
+use crate::real::sealed::Sealed;
 use crate::real::Real;
 use crate::stepper::StiffSystem;
 use nalgebra::{SVector, Vector2, Vector4};
 
-/// Prevents other crates from implementing [`Film`]: the error control is designed for the films of
-/// this crate.
-mod sealed {
-    pub trait Sealed {}
-    impl<T> Sealed for crate::law::journal::Journal<T> {}
-    impl<T> Sealed for crate::law::journal_full::JournalFull<T> {}
-}
+// The error control is designed for the films of this crate.
+impl<T> Sealed for Journal<T> {}
+impl<T> Sealed for JournalFull<T> {}
 
 /// Film model that the driver can integrate: [`Journal`] or [`JournalFull`].
 ///
 /// Its first two states are `eps cos(phi)` and `eps sin(phi)`.
-pub trait Film<T: Real, const N: usize>: sealed::Sealed {
+pub trait Film<T: Real, const N: usize>: Sealed {
     /// Film equations, either with or without asperity contact, smooth everywhere.
     type System: StiffSystem<T, N> + Copy;
 

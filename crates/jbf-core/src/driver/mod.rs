@@ -45,7 +45,6 @@ use nalgebra::Vector2;
 /// The default is time zero with the state of [`Law::start`](crate::law::Law::start): asperities
 /// just in contact, attitude angle 0.15 rad, no velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Start<T> {
     /// Start time, s.
     pub time_s: f64,
@@ -65,29 +64,6 @@ impl<T: Real> Default for Start<T> {
     }
 }
 
-impl<T: Real> Start<T> {
-    /// Sets the start time, s.
-    #[must_use]
-    pub fn with_time_s(mut self, time_s: f64) -> Self {
-        self.time_s = time_s;
-        self
-    }
-
-    /// Sets the eccentricity ratio; `None` for eps_tr.
-    #[must_use]
-    pub fn with_eps(mut self, eps: Option<T>) -> Self {
-        self.eps = eps;
-        self
-    }
-
-    /// Sets the attitude angle, rad.
-    #[must_use]
-    pub fn with_phi_rad(mut self, phi_rad: T) -> Self {
-        self.phi_rad = phi_rad;
-        self
-    }
-}
-
 /// State of the film at one sample.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
@@ -99,13 +75,6 @@ pub struct Sample<T> {
     /// Friction coefficient with the sign of the speed. At rest, it does not include the asperity
     /// part, which is set-valued there.
     pub coefficient: T,
-}
-
-impl Sample<f64> {
-    /// Returns the attitude angle, rad.
-    pub fn phi_rad(&self) -> f64 {
-        libm::atan2(self.xy.y, self.xy.x)
-    }
 }
 
 /// Computational cost of a trajectory.

@@ -272,7 +272,11 @@ mod tests {
         .expect("valid");
         let motion = Sine::new(0.127, 1.0).expect("valid");
         for eps in [0.2, 0.6, 0.99] {
-            let start = Start::default().with_eps(Some(eps)).with_phi_rad(0.0);
+            let start = Start {
+                eps: Some(eps),
+                phi_rad: 0.0,
+                ..Start::default()
+            };
             let mut way = Way::from_start(&law, &motion, &start, &[1.0], 1e-6, |_, _| ())
                 .expect("a tolerance");
             let stretch = way.begin();

@@ -68,11 +68,3 @@ signal_chain! {
         sensor_drift::SensorDrift,
     ],
 }
-
-impl<T: Real> Effects<T> {
-    /// Combines the selected effects of the catalogue with user-defined ones, which act last at
-    /// every stage.
-    pub fn with<E: Effect<T>>(self, own: E) -> (Self, E) {
-        (self, own)
-    }
-}

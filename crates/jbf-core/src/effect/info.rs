@@ -212,7 +212,7 @@ impl Info {
     /// Returns true if a parameter has its null value and this value is infinite.
     ///
     /// The effect must then be omitted, which is the only exact form of this limit.
-    pub fn absent<T: Real>(&self, values: &[T]) -> bool {
+    pub(crate) fn absent<T: Real>(&self, values: &[T]) -> bool {
         self.parameters.iter().zip(values).any(|(p, v)| {
             p.null
                 .is_some_and(|null| !null.is_finite() && v.value() == null)

@@ -93,7 +93,7 @@ impl<T: Real> Rig<T> {
     /// Creates the properties of a rig from its bearing.
     ///
     /// Without a bearing, the axis is linear and treated as a shaft of radius 1 m.
-    pub fn on(bearing: Option<&Bearing>) -> Self {
+    pub(crate) fn on(bearing: Option<&Bearing>) -> Self {
         Self {
             radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
             count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),

@@ -32,22 +32,6 @@ pub enum Need {
 }
 
 impl Need {
-    /// Returns the name used in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Need::Film => "film",
-            Need::NoFilm => "no_film",
-            Need::NoBristle => "no_bristle",
-            Need::NoDryLevel => "no_dry_level",
-            Need::Transmitted => "transmitted",
-            Need::Angle => "angle",
-            Need::Path => "path",
-            Need::Position => "position",
-            Need::Loads => "loads",
-            Need::Temperatures => "temperatures",
-        }
-    }
-
     /// Returns true if the law meets the requirement, or if the requirement does not concern the
     /// law.
     pub(crate) const fn met_by(self, law: &law::Info) -> bool {
@@ -62,23 +46,6 @@ impl Need {
             | Need::Position
             | Need::Loads
             | Need::Temperatures => true,
-        }
-    }
-
-    /// Returns the reason why a law that does not meet the requirement excludes the effect, as the
-    /// continuation of "the law ...".
-    pub const fn why_not(self) -> &'static str {
-        match self {
-            Need::Film => "has no lubricant film",
-            Need::NoFilm => "is a bearing law: its friction depends on the load and the film",
-            Need::NoBristle => "contains presliding already",
-            Need::NoDryLevel => "contains a load-independent dry friction already",
-            Need::Transmitted => "transmits nothing",
-            Need::Angle => "needs no angle",
-            Need::Path => "needs no path",
-            Need::Position => "needs no position",
-            Need::Loads => "needs no loads",
-            Need::Temperatures => "needs no temperatures",
         }
     }
 }

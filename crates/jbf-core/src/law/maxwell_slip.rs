@@ -64,7 +64,7 @@ use crate::real::Real;
 ///
 /// With 16 elements, the error relative to the virgin curve is 0.8 % of F_c at i = 0.1, 0.2 % at
 /// 1/2, and 0.6 % at 1.
-pub const ELEMENTS: usize = 16;
+pub(crate) const ELEMENTS: usize = 16;
 
 /// Law with parallel springs that slip one after the other.
 #[derive(Clone, Copy, Debug)]

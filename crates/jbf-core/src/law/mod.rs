@@ -22,7 +22,7 @@ pub mod seven_parameter;
 pub mod stribeck;
 
 pub(crate) mod bristle;
-pub mod info;
+mod info;
 mod newtons;
 mod registry;
 mod scales;

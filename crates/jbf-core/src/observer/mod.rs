@@ -1,7 +1,7 @@
 //! Observers of quantities that the encoder does not measure, one per file.
 
 pub mod coulomb;
-pub mod velocity;
+mod velocity;
 
 pub use coulomb::CoulombObserver;
 pub use velocity::VelocityObserver;

@@ -14,9 +14,6 @@
 use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
 
-/// Gain `k` of the velocity observer in Cohn (1998), 1/s.
-pub const THESIS_1_S: f64 = 15.0;
-
 /// Velocity observer with its gains; the state is the estimated speed, rad/s.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObserver<T> {

@@ -45,7 +45,7 @@ impl<const N: usize> Stages<f64, N> {
 impl<T: Real, const N: usize> Stages<T, N> {
     /// Returns the estimated error of the state at the end of the step.
     #[inline]
-    pub fn error(&self) -> &SVector<T, N> {
+    pub(crate) fn error(&self) -> &SVector<T, N> {
         &self.unknowns[7]
     }
 
@@ -56,7 +56,7 @@ impl<T: Real, const N: usize> Stages<T, N> {
     /// is much less accurate for a stiff film, because the derivatives amplify the error of the
     /// state.)
     #[inline]
-    pub fn quartic(&self, start: &SVector<T, N>, n: usize) -> [T; 5] {
+    pub(crate) fn quartic(&self, start: &SVector<T, N>, n: usize) -> [T; 5] {
         let row = |r: usize| {
             let mut sum = T::ZERO;
             for (unknown, &h) in self.unknowns.iter().zip(&H[r]) {

@@ -2,9 +2,9 @@
 
 use super::{chain_round, law};
 use jbf_core::compensator::learning::{self, Learned, Rule};
-use jbf_core::compensator::model::ChainModel;
 use jbf_core::compensator::observed::Settings;
-use jbf_core::compensator::table::Axis;
+use jbf_core::compensator::Axis;
+use jbf_core::compensator::ChainModel;
 use jbf_core::compensator::{
     Compensator, Coulomb, LawModel, Learning, NoCompensation, Observed, Repetitive, Table,
 };
@@ -47,11 +47,11 @@ pub fn controller<T: Real, C: Compensator<T>>(
     let (observer, base) = match control {
         Control::Position => (
             VelocityObserver::with_feedforward(15.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, DT_S),
-            BaseLaw::thesis_position(),
+            BaseLaw::position(&Drive::THESIS).cast(),
         ),
         Control::Velocity => (
             VelocityObserver::new(15.0, DT_S),
-            BaseLaw::thesis_velocity(),
+            BaseLaw::velocity(&Drive::THESIS).cast(),
         ),
     };
     let limits = Limits::new(10.0).with_moving_v(3.0).with_patience_s(0.1);

@@ -82,7 +82,10 @@ impl Sines {
 
     /// Returns the motion at a time under another load (N).
     pub fn under<T: Real>(&self, load_n: f64, time_s: f64) -> Motion<T> {
-        self.at(time_s).with_load_n(T::of(load_n))
+        Motion {
+            load_n: T::of(load_n),
+            ..self.at(time_s)
+        }
     }
 
     pub fn at<T: Real>(&self, time_s: f64) -> Motion<T> {
@@ -103,12 +106,14 @@ impl Sines {
         if still {
             (v, a) = (0.0, 0.0);
         }
-        Motion::at_rest(T::of(LOAD_N))
-            .with_time_s(T::of(time_s))
-            .with_velocity_m_s(T::of(self.sign * v))
-            .with_acceleration_m_s2(T::of(self.sign * a))
-            .with_angle_rad(T::of(self.sign * path_m / Bearing::THESIS.radius_m))
-            .with_temperature_c(T::of(Self::temperature_c(time_s)))
+        Motion {
+            time_s: T::of(time_s),
+            velocity_m_s: T::of(self.sign * v),
+            acceleration_m_s2: T::of(self.sign * a),
+            angle_rad: T::of(self.sign * path_m / Bearing::THESIS.radius_m),
+            temperature_c: Some(T::of(Self::temperature_c(time_s))),
+            ..Motion::at_rest(T::of(LOAD_N))
+        }
     }
 }
 
@@ -125,7 +130,9 @@ pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
 
 /// State of rest at an angle, rad.
 pub fn held<T: Real>(angle_rad: f64, time_s: f64) -> Motion<T> {
-    Motion::at_rest(T::of(LOAD_N))
-        .with_time_s(T::of(time_s))
-        .with_angle_rad(T::of(angle_rad))
+    Motion {
+        time_s: T::of(time_s),
+        angle_rad: T::of(angle_rad),
+        ..Motion::at_rest(T::of(LOAD_N))
+    }
 }

@@ -3,7 +3,7 @@
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
 use core::f64::consts::TAU;
-use jbf_core::Bearing;
+use jbf_core::{Bearing, Motion};
 
 const F_C_N: f64 = 6.0;
 
@@ -26,7 +26,10 @@ fn force_is_periodic_in_the_position_with_the_pitch() {
 #[test]
 fn force_acts_at_rest_without_changing_the_holding_level() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, 0.01, 0.5])]);
-    let held = |t: f64| constant::<f64>(0.0, t).with_angle_rad(1.1);
+    let held = |t: f64| Motion {
+        angle_rad: 1.1,
+        ..constant::<f64>(0.0, t)
+    };
     let expected = 2.0 * (TAU * 1.1 * Bearing::THESIS.radius_m / 0.01 - 0.5).sin();
     for r in readings(&chain, 0.01, 5, held) {
         assert!((r - expected).abs() < 1e-12);

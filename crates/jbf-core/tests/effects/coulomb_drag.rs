@@ -2,11 +2,15 @@
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
+use jbf_core::Motion;
 
 #[test]
 fn drag_has_the_sign_of_the_motion_and_does_not_depend_on_the_load() {
     let sines = Sines::two_way(1.0);
-    let motion = |t: f64| sines.at(t).with_load_n(104.0 + 30.0 * (3.0 * t).sin());
+    let motion = |t: f64| Motion {
+        load_n: 104.0 + 30.0 * (3.0 * t).sin(),
+        ..sines.at(t)
+    };
     let bare = readings(&chain::<f64>(&[]), 0.01, 700, motion);
     let with = readings(
         &chain::<f64>(&[("coulomb_drag", &[1.7])]),

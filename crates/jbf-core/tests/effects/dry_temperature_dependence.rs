@@ -3,6 +3,7 @@
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
+use jbf_core::Motion;
 
 const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
@@ -31,7 +32,10 @@ fn dry_level_is_zero_beyond_the_zero_of_its_line() {
     let chain = chain_round(newtons(F_C_N, 0.0), &effect);
     let sines = Sines::two_way(1.0);
     let at = |celsius: f64| {
-        let warm = |t: f64| sines.at::<f64>(t).with_temperature_c(celsius);
+        let warm = |t: f64| Motion {
+            temperature_c: Some(celsius),
+            ..sines.at::<f64>(t)
+        };
         readings(&chain, 0.01, 100, warm)[100]
     };
     assert!((at(69.0) - 0.02 * F_C_N).abs() < 1e-12, "{}", at(69.0));

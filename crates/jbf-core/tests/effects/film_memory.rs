@@ -3,6 +3,7 @@
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
+use jbf_core::Motion;
 
 #[test]
 fn faster_film_has_the_friction_of_a_slower_motion() {
@@ -11,8 +12,9 @@ fn faster_film_has_the_friction_of_a_slower_motion() {
     for factor in [0.3, 0.5, 2.0, 2.7] {
         let with = chain::<f64>(&[("film_memory", &[factor])]);
         let got = readings(&with, dt, 3000, |t| sines.at(t));
-        let slow = readings(&chain::<f64>(&[]), factor * dt, 3000, |t| {
-            sines.at(dt * (t / (factor * dt)).round()).with_time_s(t)
+        let slow = readings(&chain::<f64>(&[]), factor * dt, 3000, |t| Motion {
+            time_s: t,
+            ..sines.at(dt * (t / (factor * dt)).round())
         });
         let bare = readings(&chain::<f64>(&[]), dt, 3000, |t| sines.at(t));
         let gap = |a: &[f64]| {

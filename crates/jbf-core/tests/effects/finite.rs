@@ -9,16 +9,18 @@ use jbf_core::{Motion, Real};
 /// Unrealistic motion with jumps of speed, load, angle and temperature.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
-    Motion::at_rest(T::of(if random.chance(0.1) {
-        random.log_uniform(1.0, 1e4)
-    } else {
-        LOAD_N
-    }))
-    .with_time_s(T::of(time_s))
-    .with_velocity_m_s(T::of(if random.chance(0.2) { 0.0 } else { speed }))
-    .with_acceleration_m_s2(T::of(random.uniform(-1e3, 1e3)))
-    .with_angle_rad(T::of(random.uniform(-1e3, 1e3)))
-    .with_temperature_c(T::of(random.uniform(-1e3, 2e3)))
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(if random.chance(0.2) { 0.0 } else { speed }),
+        acceleration_m_s2: T::of(random.uniform(-1e3, 1e3)),
+        angle_rad: T::of(random.uniform(-1e3, 1e3)),
+        temperature_c: Some(T::of(random.uniform(-1e3, 2e3))),
+        ..Motion::at_rest(T::of(if random.chance(0.1) {
+            random.log_uniform(1.0, 1e4)
+        } else {
+            LOAD_N
+        }))
+    }
 }
 
 fn check<T: Real>(seed: u64) {
@@ -70,10 +72,22 @@ fn invalid_sample_or_step_does_not_change_a_run() {
             let to = sines.at::<f64>(0.01 * i as f64);
             let before = state.reading_n;
             let lost = [
-                to.with_velocity_m_s(f64::NAN),
-                to.with_angle_rad(f64::INFINITY),
-                to.with_load_n(f64::NAN),
-                to.with_temperature_c(f64::NAN),
+                Motion {
+                    velocity_m_s: f64::NAN,
+                    ..to
+                },
+                Motion {
+                    angle_rad: f64::INFINITY,
+                    ..to
+                },
+                Motion {
+                    load_n: f64::NAN,
+                    ..to
+                },
+                Motion {
+                    temperature_c: Some(f64::NAN),
+                    ..to
+                },
             ];
             for motion in &lost {
                 assert_eq!(chain.step(&mut state, motion, 0.01), before);

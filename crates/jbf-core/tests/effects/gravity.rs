@@ -2,6 +2,7 @@
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
+use jbf_core::Motion;
 
 const F_C_N: f64 = 6.0;
 
@@ -17,7 +18,10 @@ fn weight_is_proportional_to_the_sine_of_the_angle() {
             let expected = F_C_N * t.sin().signum() + g * (theta - theta_0).sin();
             assert!((f - expected).abs() < 1e-10, "{g} {i}: {f} {expected}");
         }
-        let held = |t: f64| constant::<f64>(0.0, t).with_angle_rad(1.1);
+        let held = |t: f64| Motion {
+            angle_rad: 1.1,
+            ..constant::<f64>(0.0, t)
+        };
         for r in readings(&chain, 0.01, 5, held) {
             assert!((r - g * (1.1_f64 - theta_0).sin()).abs() < 1e-12);
         }
@@ -35,8 +39,9 @@ fn weight_behind_another_joint_depends_on_the_sum_of_both_angles() {
             .chain(drive.iter().copied())
             .collect();
         let chain = chain_round(newtons(F_C_N, 0.0), &effects);
-        let got = readings(&chain, 0.01, 700, |t| {
-            sines.at::<f64>(t).with_weight_offset_rad(other(t))
+        let got = readings(&chain, 0.01, 700, |t| Motion {
+            weight_offset_rad: other(t),
+            ..sines.at::<f64>(t)
         });
         for (i, f) in got.iter().enumerate().skip(1) {
             let t = 0.01 * i as f64;

@@ -15,7 +15,12 @@ use jbf_core::{Bearing, Clock};
 fn exponents_of_two_tables_convert_the_law_of_one_load_to_the_other() {
     let share: f64 = 83.5 / LOAD_N;
     let exponent = |from: f64, to: f64| (to / from).ln() / share.ln();
-    let (from, to) = (Parameters::TABLE_4_2, Parameters::TABLE_4_3);
+    let from = Parameters::TABLE_4_2;
+    let to = Parameters {
+        u_tr_m_s: 0.05,
+        k0: 6.25e5,
+        ..from
+    };
     let powers = [
         exponent(from.u_tr_m_s, to.u_tr_m_s),
         exponent(from.k0, to.k0),

@@ -14,7 +14,10 @@ const REFERENCE_C: f64 = 40.0;
 fn factor(b_k: f64, celsius: f64) -> f64 {
     let effect: [(&str, &[f64]); 1] = [("vogel_viscosity", &[b_k, C_C, REFERENCE_C])];
     let chain = chain_round(ConstantLaw(0.1), &effect);
-    let at = |t: f64| constant::<f64>(0.05, t).with_temperature_c(celsius);
+    let at = |t: f64| Motion {
+        temperature_c: Some(celsius),
+        ..constant::<f64>(0.05, t)
+    };
     let mut state = chain.start(&at(0.0));
     chain.step(&mut state, &at(0.01), 0.01);
     state.law / 0.05
@@ -69,7 +72,12 @@ fn warm_film_equals_that_of_a_thinner_oil() {
         Journal::new(bearing, LOAD_N, p, Clock::Journal).expect("valid")
     };
     let sines = Sines::two_way(1.0);
-    let at = |t: f64| -> Motion<f64> { sines.at(t).with_temperature_c(warm) };
+    let at = |t: f64| -> Motion<f64> {
+        Motion {
+            temperature_c: Some(warm),
+            ..sines.at(t)
+        }
+    };
     let effect: [(&str, &[f64]); 1] = [("vogel_viscosity", &[b, C_C, REFERENCE_C])];
     let run =
         |law, effects: &[(&str, &[f64])]| readings(&chain_round(law, effects), 0.005, 800, at);

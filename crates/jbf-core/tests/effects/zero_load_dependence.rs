@@ -2,6 +2,7 @@
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
+use jbf_core::Motion;
 
 const F_C_N: f64 = 6.0;
 
@@ -17,8 +18,9 @@ fn force_includes_a_fraction_of_the_load_also_at_rest() {
             let expected = F_C_N * t.sin().signum() + k * load(t);
             assert!((f - expected).abs() < 1e-12, "{k} {i}: {f} {expected}");
         }
-        for r in readings(&chain, 0.01, 5, |t| {
-            constant::<f64>(0.0, t).with_load_n(50.0)
+        for r in readings(&chain, 0.01, 5, |t| Motion {
+            load_n: 50.0,
+            ..constant::<f64>(0.0, t)
         }) {
             assert!((r - 50.0 * k).abs() < 1e-12);
         }

@@ -4,7 +4,7 @@ use super::support::{along, axis, in_newtons, moving, sine, starts};
 use jbf_core::effect::Effects;
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::{steady_n, Named};
-use jbf_core::Clock;
+use jbf_core::{Clock, Motion};
 
 /// Friction after a long slide at constant speed equals the steady friction, for every law and in
 /// both directions.
@@ -140,8 +140,14 @@ fn coulomb_friction_behind_a_compliant_drive_sticks_to_f_s_and_slides_at_f_c() {
         .expect("valid");
     let chain = axis(law, effects);
     let speed = 0.01;
-    let at = |t: f64| moving(t, speed, speed * t).with_velocity_m_s(speed);
-    let mut state = chain.start(&at(0.0).with_velocity_m_s(0.0));
+    let at = |t: f64| Motion {
+        velocity_m_s: speed,
+        ..moving(t, speed, speed * t)
+    };
+    let mut state = chain.start(&Motion {
+        velocity_m_s: 0.0,
+        ..at(0.0)
+    });
     let mut peak: f64 = 0.0;
     let mut broke_at = 0.0;
     let dt = 1e-3;

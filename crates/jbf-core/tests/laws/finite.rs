@@ -13,11 +13,13 @@ use std::cell::RefCell;
 /// Unrealistic motion with jumps of speed and position.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
-    Motion::at_rest(T::ONE)
-        .with_time_s(T::of(time_s))
-        .with_velocity_m_s(T::of(if random.chance(0.2) { 0.0 } else { speed }))
-        .with_acceleration_m_s2(T::of(random.uniform(-1e3, 1e3)))
-        .with_angle_rad(T::of(random.uniform(-1e3, 1e3)))
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(if random.chance(0.2) { 0.0 } else { speed }),
+        acceleration_m_s2: T::of(random.uniform(-1e3, 1e3)),
+        angle_rad: T::of(random.uniform(-1e3, 1e3)),
+        ..Motion::at_rest(T::ONE)
+    }
 }
 
 fn check<T: Real>(seed: u64, lift: impl Fn(usize, f64) -> T, slopes: impl Fn(T) -> bool) {

@@ -68,11 +68,13 @@ pub fn anywhere(law: &Info, random: &mut Random) -> Vec<f64> {
 
 /// Motion at a time with a speed and a position, under a load of 1 N.
 pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T> {
-    Motion::at_rest(T::ONE)
-        .with_time_s(T::of(time_s))
-        .with_velocity_m_s(T::of(velocity_m_s))
-        .with_acceleration_m_s2(T::ZERO)
-        .with_angle_rad(T::of(place_m))
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(velocity_m_s),
+        acceleration_m_s2: T::ZERO,
+        angle_rad: T::of(place_m),
+        ..Motion::at_rest(T::ONE)
+    }
 }
 
 /// Sinusoidal position with an amplitude in m, as a function of time.

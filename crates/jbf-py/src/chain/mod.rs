@@ -8,6 +8,7 @@ mod slopes;
 use crate::bearing::{refused, Sizes};
 use crate::film_paths::FilmPath;
 use crate::motion::Motion;
+use crate::names::clock as clock_named;
 use crate::pool::on_pool;
 use crate::share::longest_first;
 use jbf_core::effect::Info;
@@ -98,7 +99,7 @@ impl Chain {
                 law.name
             )));
         }
-        let clock = names::clock(clock)?;
+        let clock = clock_named(clock)?;
         if !(max_step_s > 0.0 && max_step_s.is_finite()) {
             return Err(PyValueError::new_err(format!(
                 "max_step_s = {max_step_s} must be positive and finite"

@@ -1,7 +1,8 @@
-//! Look-up of laws, time scales and effects by their Python names.
+//! Look-up of laws and effects by their Python names.
 
+use crate::names::why_not;
 use jbf_core::effect::{Info, CATALOGUE};
-use jbf_core::{law, Clock};
+use jbf_core::law;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -11,13 +12,6 @@ pub fn law(name: &str) -> PyResult<&'static law::Info> {
         .iter()
         .find(|info| info.name == name)
         .ok_or_else(|| PyValueError::new_err(format!("law {name:?} is not in the catalogue")))
-}
-
-/// Returns the time scale of the film with this name, or a `ValueError`.
-pub fn clock(name: &str) -> PyResult<Clock> {
-    Clock::from_name(name).ok_or_else(|| {
-        PyValueError::new_err(format!("clock {name:?} is not known: journal or thesis"))
-    })
 }
 
 /// Returns the description of the effect with this name, or a `ValueError` if it does not apply to
@@ -32,7 +26,7 @@ pub fn effect(name: &str, law: &law::Info) -> PyResult<&'static Info> {
         Some(need) => Err(PyValueError::new_err(format!(
             "effect {name} does not apply: the law {} {}",
             law.name,
-            need.why_not()
+            why_not(need)
         ))),
     }
 }

@@ -6,7 +6,7 @@ use super::running::{boxed, Stepping};
 use super::settings::LoopSpec;
 use crate::bearing::refused;
 use jbf_core::compensator::repetitive::Repetitive;
-use jbf_core::compensator::table::{Axis, Table};
+use jbf_core::compensator::{Axis, Table};
 use jbf_core::compensator::{Coulomb, NoCompensation};
 use jbf_core::observer::CoulombObserver;
 use jbf_core::Real;
@@ -67,8 +67,9 @@ impl CoulombSpec {
             self.limit_v,
             settings.dt_s,
         );
-        let compensator = Coulomb::new(observer.map_err(refused)?, &drive);
-        Ok(compensator.resumed(T::of(self.start_v)))
+        let mut compensator = Coulomb::new(observer.map_err(refused)?, &drive);
+        compensator.start_v = T::of(self.start_v);
+        Ok(compensator)
     }
 }
 

@@ -2,12 +2,19 @@
 //! the status flags of a loop.
 
 use super::compensators::ENTRIES;
-use jbf_core::controller::{BaseLaw, Status};
-use jbf_core::observer::velocity;
+use crate::names;
+use jbf_core::controller::BaseLaw;
 use jbf_core::plant::Drive;
-use jbf_core::{encoder, Bearing};
+use jbf_core::Bearing;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+/// Counts per radian of the encoder in Cohn (1998).
+const COUNTS_PER_RAD: f64 = 2387.3;
+/// Number of bits of the encoder counter in Cohn (1998).
+const COUNTER_BITS: u32 = 16;
+/// Gain `k` of the velocity observer in Cohn (1998), 1/s.
+pub(super) const OBSERVER_1_S: f64 = 15.0;
 
 /// Sizes of the bearing of Cohn (1998), and its lubricant.
 #[pyfunction]
@@ -32,12 +39,12 @@ pub fn control_constants(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     drive.set_item("volts_per_n", thesis.volts_per_n)?;
     drive.set_item("limit_v", thesis.limit_v)?;
     d.set_item("drive", drive)?;
-    d.set_item("counts_per_rad", encoder::THESIS_COUNTS_PER_RAD)?;
-    d.set_item("counter_bits", encoder::THESIS_BITS)?;
-    d.set_item("observer_1_s", velocity::THESIS_1_S)?;
+    d.set_item("counts_per_rad", COUNTS_PER_RAD)?;
+    d.set_item("counter_bits", COUNTER_BITS)?;
+    d.set_item("observer_1_s", OBSERVER_1_S)?;
     d.set_item("table_entries", ENTRIES)?;
     let flags = PyDict::new(py);
-    for (name, flag) in Status::NAMED {
+    for (name, flag) in names::STATUS {
         flags.set_item(name, flag.bits())?;
     }
     d.set_item("flags", flags)?;

@@ -2,10 +2,10 @@
 
 use super::settings::LoopSpec;
 use crate::bearing::{refused, Sizes};
+use crate::names;
 use jbf_core::compensator::learning::{Learned, Learning, Rule, Settings};
 use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::{Clock, Real};
-use pyo3::exceptions::PyValueError;
+use jbf_core::Real;
 use pyo3::prelude::*;
 
 /// Film model and settings of a learning compensator; a gain of `None` is that of Cohn (1998).
@@ -31,8 +31,7 @@ impl LearningSpec {
     /// Creates the learning compensator for a loop.
     pub fn compensator<T: Real>(self, settings: &LoopSpec) -> PyResult<Learning<T>> {
         let bearing = self.bearing.checked()?;
-        let clock = Clock::from_name(&self.clock)
-            .ok_or_else(|| PyValueError::new_err("clock must be journal or thesis"))?;
+        let clock = names::clock(&self.clock)?;
         let parameters = Parameters {
             f_m: T::of(self.f_m),
             u_tr_m_s: T::of(self.u_tr_m_s),

@@ -11,8 +11,9 @@ mod running;
 mod settings;
 
 use crate::bearing::refused;
+use crate::names;
 use bench::{Faults, Log, Noise};
-use jbf_core::reference::{Reference, Wave};
+use jbf_core::reference::Reference;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -33,11 +34,7 @@ pub fn control_reference<'py>(
     dt_s: f64,
     samples: usize,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
-    let wave = Wave::from_name(wave).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "wave {wave:?} is not known: sine, triangle or square"
-        ))
-    })?;
+    let wave = names::wave(wave)?;
     let reference = Reference::new(wave, low, high, frequency_rad_s).map_err(refused)?;
     let points: Vec<_> = (0..samples)
         .map(|i| reference.at(i as f64 * dt_s))

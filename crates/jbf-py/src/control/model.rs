@@ -1,9 +1,9 @@
 //! Friction model passed from Python, and the chain that is created from it.
 
 use crate::bearing::{refused, Sizes};
+use crate::names;
 use jbf_core::spec::Spec;
-use jbf_core::{Clock, Real};
-use pyo3::exceptions::PyValueError;
+use jbf_core::Real;
 use pyo3::prelude::*;
 
 pub use jbf_core::spec::Using;
@@ -24,8 +24,7 @@ pub struct ModelSpec {
 impl ModelSpec {
     /// Creates the chain and passes it to the operation `then`.
     pub fn chain<T: Real, U: Using<T>>(&self, then: U) -> PyResult<U::Output> {
-        let clock = Clock::from_name(&self.clock)
-            .ok_or_else(|| PyValueError::new_err("clock must be journal or thesis"))?;
+        let clock = names::clock(&self.clock)?;
         let bearing = match &self.bearing {
             Some(sizes) => Some(sizes.clone().checked()?),
             None => None,

@@ -1,11 +1,12 @@
 //! Settings of a control loop without its compensator, passed from Python.
 
+use super::constants::OBSERVER_1_S;
 use super::plant::DriveSpec;
 use crate::bearing::refused;
 use jbf_core::compensator::Compensator;
 use jbf_core::controller::{BaseLaw, Controller, Limits};
 use jbf_core::encoder::Encoder;
-use jbf_core::observer::{velocity, VelocityObserver};
+use jbf_core::observer::VelocityObserver;
 use jbf_core::{Error, Real};
 use pyo3::prelude::*;
 
@@ -66,9 +67,9 @@ impl LoopSpec {
         if self.position {
             let drive = self.drive.drive();
             let (a, b) = (drive.damping_1_s, drive.input_rad_s2_v);
-            VelocityObserver::with_feedforward(velocity::THESIS_1_S, a, b, self.dt_s)
+            VelocityObserver::with_feedforward(OBSERVER_1_S, a, b, self.dt_s)
         } else {
-            VelocityObserver::new(velocity::THESIS_1_S, self.dt_s)
+            VelocityObserver::new(OBSERVER_1_S, self.dt_s)
         }
     }
 }

@@ -13,8 +13,8 @@ use jbf_core::controller::Controller;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::law::{with_law, Law, Named, Visitor, CATALOGUE};
-use jbf_core::motion::JournalMotion;
 use jbf_core::stepper::{Euler, Rk4, Rodas5P};
+use jbf_core::JournalMotion;
 use jbf_core::{Bearing, Clock, Motion, ParameterError, Real};
 use jbf_firmware::board::Instructions;
 use jbf_firmware::measure::measure;
@@ -33,13 +33,13 @@ fn two_way<T: Real>(step: u32, omega_rad_s: f64) -> Motion<T> {
         Real::sin(omega_rad_s * time_s),
         Real::cos(omega_rad_s * time_s),
     );
-    Motion::at_rest(T::of(104.0))
-        .with_time_s(T::of(time_s))
-        .with_velocity_m_s(T::of(0.127 * sin))
-        .with_acceleration_m_s2(T::of(0.127 * omega_rad_s * cos))
-        .with_angle_rad(T::of(
-            0.127 / omega_rad_s * (1.0 - cos) / Bearing::THESIS.radius_m,
-        ))
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(0.127 * sin),
+        acceleration_m_s2: T::of(0.127 * omega_rad_s * cos),
+        angle_rad: T::of(0.127 / omega_rad_s * (1.0 - cos) / Bearing::THESIS.radius_m),
+        ..Motion::at_rest(T::of(104.0))
+    }
 }
 
 fn ends<T: Real>(step: u32, omega_rad_s: f64) -> (Motion<T>, Motion<T>) {

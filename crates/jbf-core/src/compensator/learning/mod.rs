@@ -143,7 +143,7 @@ impl<T: Real> Compensator<T> for Learning<T> {
         if input.may_learn {
             let lesson = self.rule.lesson(input);
             let mut next = learned;
-            if state.film.eps() > state.film.eps_tr() {
+            if state.film.eps() > state.film.loaded.eps_tr {
                 next.k0 += self.gain.k0 * lesson;
             } else {
                 next.gamma += self.gain.gamma * lesson;

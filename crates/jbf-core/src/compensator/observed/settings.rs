@@ -36,8 +36,8 @@ pub struct Settings {
     pub stiffer_v_rad: f64,
     /// Additional feedback of the speed error, V s/rad, on top of the control law.
     pub stiffer_v_s_rad: f64,
-    /// Gain of the control law from the reference speed to the output, V s/rad; see
-    /// [`BaseLaw::forward_v_s_rad`].
+    /// Gain of the control law from the reference speed to the output, V s/rad:
+    /// `C` in velocity control and `-k2` in position control (see [`BaseLaw`]).
     pub law_forward_v_s_rad: f64,
     /// Time step of the control loop, s.
     pub dt_s: f64,

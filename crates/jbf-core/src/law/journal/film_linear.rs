@@ -26,7 +26,7 @@ impl<T: Real> Polar<T> {
     /// Creates a position from Cartesian coordinates, limited to the inside of the bearing in its
     /// own direction, as in [`Film`].
     #[inline]
-    pub fn held(x: T, y: T) -> Self {
+    pub(crate) fn held(x: T, y: T) -> Self {
         let distance = (x * x + y * y).sqrt().max(T::of(1e-12));
         let inverse_e = T::ONE / distance;
         Self {
@@ -46,14 +46,14 @@ impl<T: Real> Polar<T> {
 
     /// Returns the matrix `Q M Q^T`, with the rotation `Q` of the co-rotating frame.
     #[inline]
-    pub fn turned(&self, m: Matrix2<T>) -> Matrix2<T> {
+    pub(crate) fn turned(&self, m: Matrix2<T>) -> Matrix2<T> {
         let q = self.rotation();
         q * m * q.transpose()
     }
 
     /// Returns the Cartesian vector with these radial and tangential components.
     #[inline]
-    pub fn vector(&self, radial: T, tangential: T) -> Vector2<T> {
+    pub(crate) fn vector(&self, radial: T, tangential: T) -> Vector2<T> {
         self.rotation() * Vector2::new(radial, tangential)
     }
 }

@@ -38,8 +38,10 @@ mod side_by_side;
 mod state;
 mod stribeck;
 
+pub use crate::film::FilmIntegrals;
+pub use crate::transition::transition_eccentricity;
 pub(in crate::law) use named::parts;
-pub use parameters::{k0_from_original, Parameters};
+pub use parameters::Parameters;
 pub(in crate::law) use parameters::{PARAMETERS, SUMMARY};
 pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
@@ -51,7 +53,6 @@ use crate::friction::Friction;
 use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
-use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 pub(crate) use film_motion::square;
 use film_motion::{within, Asperities, Film, Gap};
@@ -59,14 +60,14 @@ use nalgebra::Vector2;
 use parameters::FILM_PARAMETERS;
 
 /// Attitude angle at the start of a run, rad; its influence decays within a second.
-pub const START_PHI_RAD: f64 = 0.15;
+pub(crate) const START_PHI_RAD: f64 = 0.15;
 
 /// Lightest load that the law uses, as a fraction of the load given to its constructor.
 ///
 /// By (3.20) eps_tr falls with the load, to zero for a bearing without load. The asperities would
 /// then be in contact at the centre, with a stiffness too high for explicit steps. The model has no
 /// meaning there.
-pub const LIGHTEST_SHARE: f64 = 0.01;
+const LIGHTEST_SHARE: f64 = 0.01;
 
 /// Friction law of a journal bearing, with precomputed constants.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +90,7 @@ pub struct Journal<T> {
 impl<T: Real> Journal<T> {
     /// Returns the load number and the transition eccentricity for a load (N), which is at least
     /// [`LIGHTEST_SHARE`] of the nominal load.
-    pub fn under(&self, load_n: T) -> Loaded<T> {
+    pub(crate) fn under(&self, load_n: T) -> Loaded<T> {
         if load_n == self.nominal.load_n {
             return self.nominal;
         }

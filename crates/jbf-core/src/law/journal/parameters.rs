@@ -1,10 +1,11 @@
-//! Parameters of the journal law: their descriptions, the values in the tables of Cohn (1998), and
-//! the original form (3.15) of the asperity stiffness.
+//! Parameters of the journal law: their descriptions and the values in Table 4.2 of Cohn (1998).
+//!
+//! The original form of the asperity stiffness, equation (3.15), corresponds to `K0 = kappa0 /
+//! (eps_b - eps_tr)`.
 
 #[cfg(doc)]
 use super::Journal;
 use crate::described::described;
-use crate::error::{check, positive, ParameterError};
 use crate::parameter::Bound;
 
 /// Physical meaning of the journal law for the catalogue, in one line.
@@ -34,41 +35,4 @@ impl Parameters<f64> {
         k0: 7.5e5,
         gamma: 33.0,
     };
-    /// Values of Table 4.3 of Cohn (1998): motion in both directions at 83.5 N.
-    pub const TABLE_4_3: Self = Self {
-        f_m: 0.26,
-        u_tr_m_s: 0.05,
-        k0: 6.25e5,
-        gamma: 33.0,
-    };
-    /// Values of Table 4.4 of Cohn (1998): motion in one direction at 104 N.
-    pub const TABLE_4_4: Self = Self {
-        f_m: 0.26,
-        u_tr_m_s: 0.05,
-        k0: 6.25e5,
-        gamma: 33.0,
-    };
-    /// Values of Table 4.5 of Cohn (1998): motion in one direction at 83.5 N.
-    pub const TABLE_4_5: Self = Self {
-        f_m: 0.26,
-        u_tr_m_s: 0.05,
-        k0: 4.5e5,
-        gamma: 33.0,
-    };
-}
-
-/// Computes `K0` from the original parameters, equation (3.15) of Cohn (1998): `K0 = kappa0 /
-/// (eps_b - eps_tr)`.
-///
-/// # Errors
-/// `kappa0` must be positive, and `eps_b` must be between `eps_tr` and 1.
-pub fn k0_from_original(kappa0: f64, eps_b: f64, eps_tr: f64) -> Result<f64, ParameterError> {
-    positive("kappa0", kappa0)?;
-    check(
-        eps_b > eps_tr && eps_b < 1.0,
-        "eps_b",
-        eps_b,
-        "must lie between eps_tr and 1",
-    )?;
-    Ok(kappa0 / (eps_b - eps_tr))
 }

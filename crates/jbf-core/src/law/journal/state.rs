@@ -6,20 +6,15 @@ use nalgebra::Vector2;
 
 /// Constants of the journal law that depend on the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Loaded<T> {
-    pub(crate) load_n: T,
+    /// Load on the bearing, N.
+    pub load_n: T,
     /// Load number `Fb`, equation (3.1) of Cohn (1998).
     pub load_number: T,
     pub(super) inverse_load_number: T,
     /// Transition eccentricity, at which asperity contact begins.
     pub eps_tr: T,
-}
-
-impl<T: Real> Loaded<T> {
-    /// Returns the load on the bearing, N.
-    pub fn load_n(&self) -> T {
-        self.load_n
-    }
 }
 
 /// State of the film: the position of the journal in its bearing, under the present load.
@@ -33,7 +28,8 @@ pub struct State<T> {
     /// Without it, a film in single precision that moves slowly, or takes short steps, would not
     /// move.
     pub(super) kept: Vector2<T>,
-    pub(super) loaded: Loaded<T>,
+    /// Constants under the present load.
+    pub loaded: Loaded<T>,
     /// Number of steps after which the position was limited to the inside of the bearing, because
     /// `dt_s` was too coarse or the input not finite.
     pub clamped: u32,
@@ -70,11 +66,5 @@ impl<T: Real> State<T> {
     #[inline]
     pub fn xy(&self) -> Vector2<T> {
         self.xy
-    }
-
-    /// Returns the transition eccentricity under the present load.
-    #[inline]
-    pub fn eps_tr(&self) -> T {
-        self.loaded.eps_tr
     }
 }

@@ -16,7 +16,7 @@
 //!                                                              [ J12  J11 ]
 //! ```
 //!
-//! which is the form in [`motion`] (an independent derivation confirmed the printed equations). The
+//! which is the form in `motion.rs` (an independent derivation confirmed the printed equations). The
 //! state is `(x, y)` and its time derivative, not eps and phi, for these reasons:
 //!
 //! - A step has no sine or cosine.
@@ -47,7 +47,7 @@
 //! ```
 
 mod build;
-pub mod motion;
+pub(crate) mod motion;
 mod named;
 mod state;
 
@@ -156,7 +156,7 @@ impl<T: Real> JournalFull<T> {
 
     /// Returns the load number and the transition eccentricity for a load (N), as
     /// [`Journal::under`].
-    pub fn under(&self, load_n: T) -> Loaded<T> {
+    pub(crate) fn under(&self, load_n: T) -> Loaded<T> {
         self.film.under(load_n)
     }
 }

@@ -7,11 +7,12 @@ use nalgebra::Vector2;
 /// Position and velocity of the journal centre, under the present load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
-    pub(super) xy: Vector2<T>,
+    /// Position `eps cos(phi)` and `eps sin(phi)`.
+    pub xy: Vector2<T>,
     /// Accumulated rounding error of `xy`.
     pub(super) kept: Vector2<T>,
     /// Derivative of `xy` with respect to dimensionless time.
-    pub(super) velocity: Vector2<T>,
+    pub velocity: Vector2<T>,
     pub(super) loaded: Loaded<T>,
     /// True if the velocity has not yet relaxed under the present load; the next step must resolve
     /// the relaxation.
@@ -38,23 +39,5 @@ impl<T: Real> State<T> {
     #[inline]
     pub fn eps(&self) -> T {
         square(&self.xy).sqrt()
-    }
-
-    /// Returns the position `eps cos(phi)` and `eps sin(phi)`.
-    #[inline]
-    pub fn xy(&self) -> Vector2<T> {
-        self.xy
-    }
-
-    /// Returns the derivative of the position with respect to dimensionless time.
-    #[inline]
-    pub fn velocity(&self) -> Vector2<T> {
-        self.velocity
-    }
-
-    /// Returns the transition eccentricity under the present load.
-    #[inline]
-    pub fn eps_tr(&self) -> T {
-        self.loaded.eps_tr
     }
 }

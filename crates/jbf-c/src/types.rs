@@ -63,21 +63,15 @@ pub struct CMotion<T> {
 
 impl<T: Real> From<&CMotion<T>> for Motion<T> {
     fn from(m: &CMotion<T>) -> Self {
-        let motion = Motion {
+        let temperature_c = m.temperature_c;
+        Motion {
             time_s: m.time_s,
             velocity_m_s: m.velocity_m_s,
             acceleration_m_s2: m.acceleration_m_s2,
             angle_rad: m.angle_rad,
             weight_offset_rad: m.weight_offset_rad,
-            ..Motion::at_rest(m.load_n)
-        };
-        if m.temperature_c.value().is_nan() {
-            motion
-        } else {
-            Motion {
-                temperature_c: Some(m.temperature_c),
-                ..motion
-            }
+            load_n: m.load_n,
+            temperature_c: (!temperature_c.value().is_nan()).then_some(temperature_c),
         }
     }
 }

@@ -66,7 +66,7 @@ impl VelocityController {
         });
         // Stamps relative to the first one: seconds since 1970 have no resolution of 1 ns in f64.
         let time_s = 1e-9 * (message.stamp_ns - *first_ns) as f64;
-        let dt_s = time_s - state.motion().time_s;
+        let dt_s = time_s - state.motion.time_s;
         if dt_s < 0.0 || (dt_s == 0.0 && time_s > 0.0) {
             return None;
         }

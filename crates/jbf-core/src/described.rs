@@ -12,7 +12,7 @@
 /// ```ignore
 /// described! {
 ///     named_effect CoulombDrag = Info::new("coulomb_drag", Stage::Other).summary("...");
-///     f_d = "F_d", "N", "drag force per bearing", [0.0, 1e4], [0.5] null(0.0) .start(Start::Drag);
+///     f_d = "F_d", "N", "drag force per bearing", [0.0, 1e4], [0.5] null(0.0);
 /// }
 /// ```
 ///
@@ -29,31 +29,29 @@ macro_rules! described {
     // Parameters in common, replaced by their full lines.
     (@ $O:tt $i:tt [$($d:tt)*] F_c; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
         f_c = "F_c", "N", "Coulomb (kinetic) friction", [1e-6, 1e7], [10.0]
-            .log().start($crate::parameter::Start::Kinetic);
+            .log();
     ] $($r)* } };
     (@ $O:tt $i:tt [$($d:tt)*] F_s; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
         f_s = "F_s", "N", "static (breakaway) friction", [1e-6, 1e7], [12.0]
-            .log().start($crate::parameter::Start::Breakaway);
+            .log();
     ] $($r)* } };
     (@ $O:tt $i:tt [$($d:tt)*] F_v; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
-        f_v = "F_v", "N s/m", "viscous friction", [0.0, 1e7], [10.0]
-            .start($crate::parameter::Start::Viscous);
+        f_v = "F_v", "N s/m", "viscous friction", [0.0, 1e7], [10.0];
     ] $($r)* } };
     (@ $O:tt $i:tt [$($d:tt)*] v_s; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
         v_s = "v_s", "m/s", "Stribeck speed: scale of the decrease of friction", [1e-7, 1e3],
-            [0.01, 0.1] .log().start($crate::parameter::Start::StribeckSpeed);
+            [0.01, 0.1] .log();
     ] $($r)* } };
     (@ $O:tt $i:tt [$($d:tt)*] phase_rad; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
         phase_rad = "phase_rad", "rad", "phase at position zero", [-4.0 * PI, 4.0 * PI],
             [0.0, FRAC_PI_2, PI, -FRAC_PI_2] .period(TAU).signed();
     ] $($r)* } };
     (@ $O:tt $i:tt [$($d:tt)*] C_c; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
-        c_c = "C_c", "C", "Vogel's C: -95 for mineral oils", [-250.0, -60.0], [-95.0] .stated();
+        c_c = "C_c", "C", "Vogel's C: -95 for mineral oils", [-250.0, -60.0], [-95.0];
     ] $($r)* } };
     (@ $O:tt $i:tt [$($d:tt)*] T_0_c; $($r:tt)*) => { $crate::described::described! { @ $O $i [$($d)*
         t_0_c = "T_0_c", "C", "reference temperature, at which the law's parameters hold",
-            [-100.0, 1000.0], [40.0]
-            .start($crate::parameter::Start::ReferenceTemperature).stated();
+            [-100.0, 1000.0], [40.0];
     ] $($r)* } };
     // A full line is kept.
     (@ $O:tt $i:tt [$($d:tt)*]

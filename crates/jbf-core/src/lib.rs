@@ -23,7 +23,7 @@ mod error;
 mod film;
 mod friction;
 mod motion;
-pub mod parameter;
+mod parameter;
 mod path;
 mod real;
 mod relaxation;
@@ -36,7 +36,6 @@ pub mod effect;
 pub mod law;
 mod record;
 pub mod run;
-pub mod spec;
 
 // Fixed-step integrators, and trajectories computed to a tolerance.
 pub mod driver;

@@ -1,7 +1,7 @@
 //! Description of one parameter of a law or an effect.
 //!
-//! The description is the single source of the name, the bounds, the start values of a fit, and the
-//! behaviour under reflection.
+//! The description is the single source of the name, the bounds, the usual values and the behaviour
+//! under reflection.
 
 use crate::error::{check, exactly, given, needed, within, ParameterError};
 use crate::real::Real;
@@ -14,124 +14,6 @@ pub enum Mirror {
     /// The parameter changes sign: an angle, a force with a direction, a difference of two
     /// directions.
     Negate,
-}
-
-/// Quantity of the data from which a fit computes the start value of a parameter.
-///
-/// Machines differ in size, from a watch to a press, so most parameters of a law in newtons have no
-/// common start value. The forces of other laws are proportional to the load; with these laws, the
-/// start values of the catalogue apply.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
-    /// Start values of the catalogue.
-    Catalogue,
-    /// Mean friction in motion.
-    Kinetic,
-    /// Friction at the start of motion (breakaway).
-    Breakaway,
-    /// Excess of friction at the start of motion over friction in motion.
-    BreakawayExcess,
-    /// Slope of friction over speed.
-    Viscous,
-    /// Low speed, over which friction falls (Stribeck speed).
-    StribeckSpeed,
-    /// Typical speed.
-    UsualSpeed,
-    /// Inverse of a typical speed.
-    Slowness,
-    /// Friction divided by the distance over which a contact deflects.
-    Stiffness,
-    /// Small fraction of a typical stroke.
-    SlipDistance,
-    /// Small fraction of friction divided by a typical speed.
-    Damping,
-    /// Small fraction of the friction in motion.
-    Drag,
-    /// Mass that explains the force during acceleration.
-    Mass,
-    /// Pitches (spatial periods) with which the force varies along the travel.
-    Pitch,
-    /// Pitches (spatial periods) with which the force in the direction of motion varies.
-    RipplePitch,
-    /// Fraction of the duration of a typical run.
-    RunTime,
-    /// Temperature for which the viscosity of the rig is given, otherwise the mean recorded
-    /// temperature, C.
-    ReferenceTemperature,
-    /// Half-width of a load-cell hysteresis: a small fraction of the largest recorded force.
-    CellPlay,
-    /// Cubic coefficient that corresponds to a small nonlinearity at the largest recorded force.
-    CellCubic,
-    /// Middle of the travel of the runs.
-    StrokeMiddle,
-    /// Half of the travel of the runs.
-    StrokeHalf,
-    /// Start values of the catalogue, and smaller values down to a fraction of the sampling
-    /// interval.
-    Lateness,
-    /// Backlash of a small fraction of a stroke, on a linear axis.
-    DrivePlay,
-    /// Stiffness of a drive that deflects by a small fraction of a stroke, on a linear axis.
-    DriveStiffness,
-    /// Mass that oscillates fast relative to a stroke, on a linear axis.
-    DriveInertia,
-    /// Damping that is considerable at a typical speed, on a linear axis.
-    DriveDamping,
-}
-
-impl Start {
-    /// Returns the name used in files and in Python.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Start::Catalogue => "catalogue",
-            Start::Kinetic => "kinetic",
-            Start::Breakaway => "breakaway",
-            Start::BreakawayExcess => "breakaway_excess",
-            Start::Viscous => "viscous",
-            Start::StribeckSpeed => "stribeck_speed",
-            Start::UsualSpeed => "usual_speed",
-            Start::Slowness => "slowness",
-            Start::Stiffness => "stiffness",
-            Start::SlipDistance => "slip_distance",
-            Start::Damping => "damping",
-            Start::Drag => "drag",
-            Start::Mass => "mass",
-            Start::Pitch => "pitch",
-            Start::RipplePitch => "ripple_pitch",
-            Start::RunTime => "run_time",
-            Start::ReferenceTemperature => "reference_temperature",
-            Start::CellPlay => "cell_play",
-            Start::CellCubic => "cell_cubic",
-            Start::StrokeMiddle => "stroke_middle",
-            Start::StrokeHalf => "stroke_half",
-            Start::Lateness => "lateness",
-            Start::DrivePlay => "drive_play",
-            Start::DriveStiffness => "drive_stiffness",
-            Start::DriveInertia => "drive_inertia",
-            Start::DriveDamping => "drive_damping",
-        }
-    }
-}
-
-/// Upper bound of a parameter in a fit, in addition to the bounds of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bound {
-    /// No additional bound.
-    Catalogue,
-    /// Highest recorded speed, for the speed at which a film carries the whole load.
-    ///
-    /// Values far above the recorded speeds have no visible effect.
-    TransitionSpeed,
-}
-
-impl Bound {
-    /// Returns the name used in files and in Python.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Bound::Catalogue => "catalogue",
-            Bound::TransitionSpeed => "transition_speed",
-        }
-    }
 }
 
 /// Description of one parameter of a law or an effect.
@@ -159,15 +41,6 @@ pub struct Parameter {
     pub period: Option<f64>,
     /// Behaviour under reflection of the machine.
     pub mirror: Mirror,
-    /// Quantity of the data from which a fit computes the start value.
-    pub start: Start,
-    /// Upper bound in a fit, in addition to `upper`.
-    pub bound: Bound,
-    /// True for a parameter that is specified instead of estimated.
-    ///
-    /// A fit holds such a parameter at its start value, or at a value given by the user. The
-    /// parameter is a reference for others, or records do not determine it in addition to them.
-    pub stated: bool,
 }
 
 impl Parameter {
@@ -190,9 +63,6 @@ impl Parameter {
             log: false,
             period: None,
             mirror: Mirror::Same,
-            start: Start::Catalogue,
-            bound: Bound::Catalogue,
-            stated: false,
         }
     }
 
@@ -217,24 +87,6 @@ impl Parameter {
     /// Marks the parameter as one that changes sign under reflection.
     pub(crate) const fn signed(mut self) -> Self {
         self.mirror = Mirror::Negate;
-        self
-    }
-
-    /// Sets the quantity of the data from which a fit computes the start value.
-    pub(crate) const fn start(mut self, start: Start) -> Self {
-        self.start = start;
-        self
-    }
-
-    /// Marks the parameter as one that is specified instead of estimated.
-    pub(crate) const fn stated(mut self) -> Self {
-        self.stated = true;
-        self
-    }
-
-    /// Sets the quantity of the data that limits the parameter in a fit.
-    pub(crate) const fn bound(mut self, bound: Bound) -> Self {
-        self.bound = bound;
         self
     }
 }

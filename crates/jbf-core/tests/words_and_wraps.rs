@@ -1,5 +1,5 @@
-//! Tests of names in descriptions, a law whose bristle does not deflect, an instrument alone, a
-//! periodic table, and learned viscous friction.
+//! Tests of a law whose bristle does not deflect, an instrument alone, a periodic table, and learned
+//! viscous friction.
 
 mod common;
 
@@ -8,46 +8,8 @@ use jbf_core::compensator::learning::Learned;
 use jbf_core::compensator::{Axis, Table};
 use jbf_core::compensator::{Compensator, Input};
 use jbf_core::law::Law;
-use jbf_core::parameter::{Bound, Start};
 use jbf_core::run::read_force;
 use jbf_core::{Friction, Motion};
-
-/// The names of start rules and bounds in files and in Python are unique.
-#[test]
-fn start_rules_and_bounds_have_their_names_in_files() {
-    let names = [
-        (Start::Catalogue, "catalogue"),
-        (Start::Kinetic, "kinetic"),
-        (Start::Breakaway, "breakaway"),
-        (Start::BreakawayExcess, "breakaway_excess"),
-        (Start::Viscous, "viscous"),
-        (Start::StribeckSpeed, "stribeck_speed"),
-        (Start::UsualSpeed, "usual_speed"),
-        (Start::Slowness, "slowness"),
-        (Start::Stiffness, "stiffness"),
-        (Start::Damping, "damping"),
-        (Start::Drag, "drag"),
-        (Start::Mass, "mass"),
-        (Start::Pitch, "pitch"),
-        (Start::RipplePitch, "ripple_pitch"),
-        (Start::RunTime, "run_time"),
-        (Start::ReferenceTemperature, "reference_temperature"),
-        (Start::CellPlay, "cell_play"),
-        (Start::CellCubic, "cell_cubic"),
-        (Start::StrokeMiddle, "stroke_middle"),
-        (Start::StrokeHalf, "stroke_half"),
-        (Start::Lateness, "lateness"),
-        (Start::DrivePlay, "drive_play"),
-        (Start::DriveStiffness, "drive_stiffness"),
-        (Start::DriveInertia, "drive_inertia"),
-        (Start::DriveDamping, "drive_damping"),
-    ];
-    for (start, name) in names {
-        assert_eq!(start.name(), name);
-    }
-    assert_eq!(Bound::Catalogue.name(), "catalogue");
-    assert_eq!(Bound::TransitionSpeed.name(), "transition_speed");
-}
 
 /// Law that declares a bristle but does not implement its deflection.
 #[derive(Clone, Copy, Debug)]

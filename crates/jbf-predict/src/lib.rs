@@ -2,7 +2,7 @@
 //! for laws and effects that are selected by name at run time.
 //!
 //! ```
-//! use jbf_core::{law, record::Record, Clock};
+//! use jbf_core::{law, run::Record, Clock};
 //! use jbf_predict::Model;
 //!
 //! let coulomb = law::CATALOGUE.iter().find(|info| info.name == "coulomb").unwrap();

@@ -3,9 +3,9 @@
 use crate::run::Run;
 use jbf_batch::film_path::Place;
 use jbf_batch::Baseline;
+use jbf_catalogue::{Spec, Using};
 use jbf_core::effect::Info;
 use jbf_core::run::Record;
-use jbf_core::spec::{Spec, Using};
 use jbf_core::{law, Bearing, Clock, ParameterError, Real};
 
 /// Prediction model: a friction law with effects.

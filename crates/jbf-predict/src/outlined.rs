@@ -13,9 +13,7 @@ use core::cell::RefCell;
 use jbf_batch::InstructionSet;
 use jbf_core::effect::{Effect, Effects, OccupiedStages, Resistance, Rig, Signal, States};
 use jbf_core::law::Scales;
-use jbf_core::Friction;
-use jbf_core::Real;
-use jbf_core::{JournalMotion, Motion};
+use jbf_core::{Friction, JournalMotion, Motion, Real};
 
 /// Effects of the catalogue whose stages are functions that are compiled for the instruction set
 /// `I`.

@@ -4,11 +4,11 @@ use crate::model::FilmPath;
 use crate::outlined::Outlined;
 use jbf_batch::film_path::OnPath;
 use jbf_batch::InstructionSet;
+use jbf_catalogue::Using;
 use jbf_core::effect::Effect;
 use jbf_core::law::{Law, Named};
 use jbf_core::run::Record;
 use jbf_core::run::{self, Steps};
-use jbf_core::spec::Using;
 use jbf_core::{Chain, Motion, Real};
 use std::cell::RefCell;
 

@@ -6,10 +6,14 @@ use jbf_core::law;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, PyList>> {
+fn parameters<'py>(
+    py: Python<'py>,
+    owner: &str,
+    list: &[Parameter],
+) -> PyResult<Bound<'py, PyList>> {
     let out = PyList::empty(py);
     for p in list {
-        let d = PyDict::new(py);
+        let (d, fit) = (PyDict::new(py), jbf_catalogue::parameter(owner, p.name));
         d.set_item("name", p.name)?;
         d.set_item("unit", p.unit)?;
         d.set_item("meaning", p.meaning)?;
@@ -19,9 +23,9 @@ fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, P
         d.set_item("starts", p.starts.to_vec())?;
         d.set_item("log", p.log)?;
         d.set_item("period", p.period)?;
-        d.set_item("start", p.start.name())?;
-        d.set_item("bound", p.bound.name())?;
-        d.set_item("stated", p.stated)?;
+        d.set_item("start", fit.start.name())?;
+        d.set_item("bound", fit.bound.name())?;
+        d.set_item("stated", fit.stated)?;
         out.append(d)?;
     }
     Ok(out)
@@ -32,7 +36,7 @@ fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, P
 pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let out = PyList::empty(py);
     for info in CATALOGUE {
-        let d = PyDict::new(py);
+        let (d, fit) = (PyDict::new(py), jbf_catalogue::effect(info.name));
         d.set_item("name", info.name)?;
         d.set_item("stage", info.stage.to_string())?;
         d.set_item("summary", info.summary)?;
@@ -48,14 +52,14 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
             }
         }
         d.set_item("refused", refused)?;
-        d.set_item("moves_jumps", info.moves_jumps)?;
-        d.set_item("spreads_jumps", info.spreads_jumps)?;
-        d.set_item("peaks", info.multimodal_in)?;
+        d.set_item("moves_jumps", fit.moves_jumps)?;
+        d.set_item("spreads_jumps", fit.spreads_jumps)?;
+        d.set_item("peaks", fit.multimodal_in)?;
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("further_of", info.further_of)?;
-        d.set_item("unknown_start", info.unknown_start)?;
+        d.set_item("unknown_start", fit.unknown_start)?;
         d.set_item("rust_type", info.rust_type)?;
-        d.set_item("parameters", parameters(py, info.parameters)?)?;
+        d.set_item("parameters", parameters(py, info.name, info.parameters)?)?;
         out.append(d)?;
     }
     Ok(out)
@@ -77,7 +81,7 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("has_bristle", info.has_bristle)?;
         d.set_item("has_memory", info.has_memory)?;
         d.set_item("rust_type", info.rust_type)?;
-        d.set_item("parameters", parameters(py, info.parameters)?)?;
+        d.set_item("parameters", parameters(py, info.name, info.parameters)?)?;
         out.append(d)?;
     }
     Ok(out)

@@ -3,9 +3,9 @@
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
+use jbf_catalogue::{Spec, Using};
 use jbf_core::effect::{self, Need};
 use jbf_core::law::{self, Named};
-use jbf_core::spec::{Spec, Using};
 use jbf_core::{Bearing, Chain, Clock, Real};
 
 /// Largest number of parameters of a law or an effect.

@@ -50,16 +50,14 @@ fn step<T: Real, L: Named<T>, E: Effect<T>>(
     chain: &Chain<T, L, E>,
     c: &[Vec<f64>; 7],
 ) -> Vec<T> {
-    let motion = |i: usize| {
-        let motion = Motion {
-            time_s: T::of(c[0][i]),
-            velocity_m_s: T::of(c[1][i]),
-            acceleration_m_s2: T::of(c[2][i]),
-            angle_rad: T::of(c[3][i]),
-            weight_offset_rad: T::of(if c[6][i].is_nan() { 0.0 } else { c[6][i] }),
-            ..Motion::at_rest(T::of(c[4][i]))
-        };
-        if c[5][i].is_nan() { motion } else { Motion { temperature_c: Some(T::of(c[5][i])), ..motion } }
+    let motion = |i: usize| Motion {
+        time_s: T::of(c[0][i]),
+        velocity_m_s: T::of(c[1][i]),
+        acceleration_m_s2: T::of(c[2][i]),
+        angle_rad: T::of(c[3][i]),
+        weight_offset_rad: T::of(if c[6][i].is_nan() { 0.0 } else { c[6][i] }),
+        load_n: T::of(c[4][i]),
+        temperature_c: (!c[5][i].is_nan()).then(|| T::of(c[5][i])),
     };
     let mut state = chain.start(&motion(0));
     let mut out = vec![state.reading_n];

@@ -40,8 +40,10 @@ pub struct State<T: Real, S, E: Effect<T> = Effects<T>> {
     /// State of the friction law.
     pub law: S,
     effects: E::State,
-    motion: Motion<T>,
-    journal: JournalMotion<T>,
+    /// Commanded motion at the last accepted sample.
+    pub motion: Motion<T>,
+    /// Motion of the journal, which differs from the commanded motion if the drive is compliant.
+    pub journal: JournalMotion<T>,
     film_speed_m_s: T,
     /// Factor by which the effects of the lubricant scale the speed of the film.
     film_factor: T,
@@ -54,19 +56,6 @@ pub struct State<T: Real, S, E: Effect<T> = Effects<T>> {
     pub force_n: T,
     /// Reading of the instrument (predicted recorded force), N.
     pub reading_n: T,
-}
-
-impl<T: Real, S, E: Effect<T>> State<T, S, E> {
-    /// Returns the motion of the journal, which differs from the commanded motion if the drive is
-    /// compliant.
-    pub fn journal(&self) -> &JournalMotion<T> {
-        &self.journal
-    }
-
-    /// Returns the commanded motion at the last accepted sample.
-    pub fn motion(&self) -> &Motion<T> {
-        &self.motion
-    }
 }
 
 impl<T: Real, L: Law<T>> Chain<T, L, ()> {

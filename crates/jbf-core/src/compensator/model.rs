@@ -145,9 +145,9 @@ impl<T: Real, L: Law<T>, E: Effect<T>> FrictionModel<T> for ChainModel<T, L, E> 
     #[inline]
     fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T) {
         let velocity_m_s = velocity_rad_s * self.chain.rig.radius_m;
-        let change = velocity_m_s - state.motion().velocity_m_s;
+        let change = velocity_m_s - state.motion.velocity_m_s;
         let to = Motion {
-            time_s: state.motion().time_s + dt_s,
+            time_s: state.motion.time_s + dt_s,
             velocity_m_s,
             acceleration_m_s2: change / dt_s,
             angle_rad,

@@ -17,7 +17,6 @@ use super::registry::named_effect;
 use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::motion::{crossing, JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Backlash in the drive: a gap between two flanks.
@@ -88,11 +87,10 @@ described! {
              its flank; a presliding bristle keeps its force while the driven side rests; on \
              a linear axis the gap is in m",
         )
-        .needs(&[Need::NoBristle])
-        .moves_jumps();
+        .needs(&[Need::NoBristle]);
     // A gap that is crossed within a few samples is found only from a start value as small.
     gap = "gap", "rad", "angle between the flanks",
-        [0.0, 1.0], [0.0215, 0.0043, 0.000_86] null(0.0) .start(Start::DrivePlay);
+        [0.0, 1.0], [0.0215, 0.0043, 0.000_86] null(0.0);
 }
 
 impl<T: Real> Backlash<T> {

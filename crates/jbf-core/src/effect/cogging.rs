@@ -16,7 +16,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -37,9 +36,9 @@ described! {
                  have the same zero in every run",
         )
         .needs(&[Need::NoFilm, Need::Position]);
-    a = "A", "N", "amplitude", [0.0, 1e7], [1.0] null(0.0) .start(Start::Drag);
+    a = "A", "N", "amplitude", [0.0, 1e7], [1.0] null(0.0);
     pitch = "pitch", "m", "length of one period, at the radius",
-        [1e-6, 1e3], [0.5, 0.2] .log().start(Start::Pitch);
+        [1e-6, 1e3], [0.5, 0.2] .log();
     phase_rad;
 }
 

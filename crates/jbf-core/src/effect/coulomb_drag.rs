@@ -7,7 +7,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Dry friction of seals and support bearings.
@@ -23,7 +22,7 @@ described! {
         .source("Cohn 1998, section 6.6")
         .limits("constant level; seals also stiffen with speed and pressure, which is not included")
         .needs(&[Need::NoDryLevel]);
-    f_d = "F_d", "N", "drag force per bearing", [0.0, 1e4], [0.5] null(0.0) .start(Start::Drag);
+    f_d = "F_d", "N", "drag force per bearing", [0.0, 1e4], [0.5] null(0.0);
 }
 
 impl<T: Real> CoulombDrag<T> {

@@ -18,7 +18,6 @@ use super::registry::named_effect;
 use super::{Effect, Info, Need, Resistance, Rig, Stage};
 use crate::described::described;
 use crate::motion::{sag, JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Largest number of integration steps per step of the chain.
@@ -81,16 +80,13 @@ described! {
             "one spring, one inertia; higher torsional modes are not included; on a linear axis \
              k is in N/m, c in N s/m, J in kg",
         )
-        .needs(&[Need::Path, Need::NoBristle])
-        // The drive rings, often faster than half the sampling rate. Frequencies that the samples
-        // cannot distinguish each give a peak of the likelihood.
-        .multimodal_in("J");
+        .needs(&[Need::Path, Need::NoBristle]);
     k = "k", "N m/rad", "torsional stiffness between encoder and journal",
-        [0.1, 1e7], [60.0, 600.0] null(f64::INFINITY) .log().start(Start::DriveStiffness);
+        [0.1, 1e7], [60.0, 600.0] null(f64::INFINITY) .log();
     c = "c", "N m s/rad", "damping in parallel to the spring",
-        [1e-5, 1e3], [0.1] .log().start(Start::DriveDamping);
+        [1e-5, 1e3], [0.1] .log();
     j = "J", "kg m^2", "inertia of the driven side",
-        [1e-6, 1e2], [2e-3] .log().start(Start::DriveInertia);
+        [1e-6, 1e2], [2e-3] .log();
 }
 
 impl<T: Real> DriveCompliance<T> {

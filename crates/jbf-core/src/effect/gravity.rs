@@ -11,7 +11,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -35,7 +34,7 @@ described! {
         )
         .needs(&[Need::NoFilm, Need::Angle]);
     g = "G", "N", "weight of the horizontal link, as a force at the radius",
-        [0.0, 1e7], [1.0] null(0.0) .start(Start::Kinetic);
+        [0.0, 1e7], [1.0] null(0.0);
     theta_0_rad = "theta_0_rad", "rad", "angle at which the link hangs down",
         [-4.0 * PI, 4.0 * PI], [0.0, FRAC_PI_2, PI, -FRAC_PI_2] .period(TAU).signed();
 }

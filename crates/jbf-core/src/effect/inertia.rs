@@ -8,7 +8,6 @@ use super::{Effect, Info, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Reflected inertia of a mass in the force path.
@@ -28,7 +27,7 @@ described! {
                  its noise",
         );
     m_e = "m_e", "kg", "effective mass at the sliding surface",
-        [0.0, 1e6], [4.0, 100.0] null(0.0) .start(Start::Mass);
+        [0.0, 1e6], [4.0, 100.0] null(0.0);
 }
 
 impl<T: Real> Inertia<T> {

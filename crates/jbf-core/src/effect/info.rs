@@ -72,22 +72,6 @@ pub struct Info {
     /// Name of the effect of which this one is a second instance, such as `cogging` for
     /// `cogging_2`.
     pub further_of: Option<&'static str>,
-    /// True if neither the first sample of a run nor the passage of time determines the initial
-    /// state.
-    ///
-    /// Only a reversal of its input erases the influence of such an initial state.
-    pub unknown_start: bool,
-    /// True if a parameter changes the instants at which friction jumps.
-    ///
-    /// A fit must then exclude the samples next to such a jump.
-    pub moves_jumps: bool,
-    /// True if the predicted force depends on a jump for longer than the step of the jump.
-    ///
-    /// An error in the instant of the jump then affects more samples than those next to it.
-    pub spreads_jumps: bool,
-    /// Name of the parameter along which the likelihood may have several maxima; a fit then
-    /// searches for higher ones.
-    pub multimodal_in: Option<&'static str>,
 }
 
 impl Info {
@@ -107,10 +91,6 @@ impl Info {
             has_memory: core::mem::size_of::<E::State>() > 0,
             transmitted: false,
             further_of: None,
-            unknown_start: false,
-            moves_jumps: false,
-            spreads_jumps: false,
-            multimodal_in: None,
         }
     }
 
@@ -165,31 +145,6 @@ impl Info {
     /// Marks the effect as a second instance of the effect `of`.
     pub(crate) const fn further(mut self, of: &'static str) -> Self {
         self.further_of = Some(of);
-        self
-    }
-
-    /// Marks the effect as one whose initial state the first sample does not determine and that
-    /// persists.
-    pub(crate) const fn unknown_start(mut self) -> Self {
-        self.unknown_start = true;
-        self
-    }
-
-    /// Marks the effect as one whose parameters change the instants at which friction jumps.
-    pub(crate) const fn moves_jumps(mut self) -> Self {
-        self.moves_jumps = true;
-        self
-    }
-
-    /// Marks the effect as one after which the force depends on a jump for longer than a step.
-    pub(crate) const fn spreads_jumps(mut self) -> Self {
-        self.spreads_jumps = true;
-        self
-    }
-
-    /// Sets the parameter along which the likelihood may have several maxima.
-    pub(crate) const fn multimodal_in(mut self, parameter: &'static str) -> Self {
-        self.multimodal_in = Some(parameter);
         self
     }
 

@@ -64,7 +64,7 @@ mod stage;
 mod vogel;
 
 pub use crate::law::Scales;
-pub use crate::parameter::Parameter;
+pub use crate::parameter::{Mirror, Parameter};
 pub use catalogue::{Effects, OccupiedStages, States, CATALOGUE};
 pub use info::{Info, Named, Stage};
 pub use need::Need;

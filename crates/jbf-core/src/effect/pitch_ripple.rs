@@ -13,7 +13,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -36,7 +35,7 @@ described! {
         .needs(&[Need::NoFilm, Need::Position]);
     a = "a", "-", "relative amplitude of the ripple", [0.0, 1.0], [0.1] null(0.0);
     pitch = "pitch", "m", "length of one period, at the radius",
-        [1e-6, 1e3], [0.5, 0.2] .log().start(Start::RipplePitch);
+        [1e-6, 1e3], [0.5, 0.2] .log();
     phase_rad;
 }
 

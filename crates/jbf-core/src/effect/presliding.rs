@@ -15,7 +15,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::law::bristle::bent;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::path::legs;
 use crate::real::Real;
 
@@ -42,7 +41,7 @@ described! {
         )
         .needs(&[Need::NoBristle]);
     sigma = "sigma", "1/m", "contact stiffness per load",
-        [1.0, 1e12], [3e3, 3e2, 3e4, 3e5] null(f64::INFINITY) .log().start(Start::Stiffness);
+        [1.0, 1e12], [3e3, 3e2, 3e4, 3e5] null(f64::INFINITY) .log();
 }
 
 impl<T: Real> Presliding<T> {

@@ -23,7 +23,6 @@ use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
 use crate::described::described;
 use crate::motion::Motion;
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Hysteresis of a load cell, from play or friction in the force path.
@@ -80,10 +79,9 @@ described! {
         .limits(
             "constant gap; loops that widen gradually or with the force are not included; \
              each run starts at mid-gap (samples that depend on this are excluded from a fit)",
-        )
-        .unknown_start();
+        );
     w = "w", "N", "half of the distance between the branches",
-        [0.0, 1e5], [0.5] null(0.0) .start(Start::CellPlay);
+        [0.0, 1e5], [0.5] null(0.0);
 }
 
 impl<T: Real> SensorHysteresis<T> {

@@ -6,7 +6,6 @@ use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
 use crate::described::described;
 use crate::motion::Motion;
-use crate::parameter::Start;
 use crate::real::Real;
 use crate::relaxation::relax;
 
@@ -23,10 +22,9 @@ described! {
         .source("Cohn 1998, section 4.1")
         .limits(
             "first order; a steep filter delays more than it smooths; a pure delay is time_delay",
-        )
-        .spreads_jumps();
+        );
     tau_s = "tau_s", "s", "time constant",
-        [0.0, 1e2], [0.05, 0.3] null(0.0) .start(Start::Lateness);
+        [0.0, 1e2], [0.05, 0.3] null(0.0);
 }
 
 impl<T: Real> SensorLag<T> {

@@ -15,7 +15,6 @@ use super::registry::named_effect;
 use super::{Effect, Info, Rig, Signal, Stage};
 use crate::described::described;
 use crate::motion::Motion;
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Largest relative error of a reading, a limit that keeps the reading finite.
@@ -50,7 +49,7 @@ described! {
              c; a gain error belongs to the law",
         );
     c = "c", "1/N^2", "error of the reading per cube of the force",
-        [-1e6, 1e6], [1e-4] null(0.0) .start(Start::CellCubic);
+        [-1e6, 1e6], [1e-4] null(0.0);
 }
 
 impl<T: Real> SensorNonlinearity<T> {

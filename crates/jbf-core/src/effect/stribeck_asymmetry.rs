@@ -12,7 +12,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Stribeck peak that differs between the two directions.
@@ -31,9 +30,9 @@ described! {
         .limits("no memory, no dwell; the dry level is never below zero in either direction")
         .needs(&[Need::NoFilm]);
     c = "c", "N", "half of the difference of the peaks between the directions",
-        [-1e7, 1e7], [0.1] null(0.0) .signed().start(Start::BreakawayExcess);
+        [-1e7, 1e7], [0.1] null(0.0) .signed();
     v_s = "v_s", "m/s", "speed at which it has fallen to 1/e",
-        [1e-7, 1e2], [0.01, 0.04] .log().start(Start::StribeckSpeed);
+        [1e-7, 1e2], [0.01, 0.04] .log();
     n = "n", "-", "exponent of the decrease", [0.2, 8.0], [1.5] .log();
 }
 

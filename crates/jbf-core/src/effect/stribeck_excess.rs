@@ -9,7 +9,6 @@ use super::{Effect, Info, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Friction at low speed in addition to that of the law.
@@ -27,9 +26,9 @@ described! {
         .source("Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2")
         .limits("no memory (a film that lags behind the speed is film_memory); no dwell");
     a = "a", "-", "friction coefficient added at rest",
-        [0.0, 1e3], [0.05] null(0.0) .start(Start::BreakawayExcess);
+        [0.0, 1e3], [0.05] null(0.0);
     v_s = "v_s", "m/s", "speed at which it has fallen to 1/e",
-        [1e-7, 1e2], [0.01, 0.04] .log().start(Start::StribeckSpeed);
+        [1e-7, 1e2], [0.01, 0.04] .log();
     n = "n", "-", "exponent of the decrease", [0.2, 8.0], [1.5] .log();
 }
 

@@ -21,7 +21,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 use core::f64::consts::FRAC_PI_2;
 
@@ -53,8 +52,8 @@ described! {
     a_5 = "a_5", "-", "two and a half waves", [-2.0, 2.0], [0.1] null(0.0) .signed();
     a_6 = "a_6", "-", "three waves", [-2.0, 2.0], [0.1] null(0.0);
     x_0 = "x_0", "m", "middle of the stroke",
-        [-1e6, 1e6], [0.1] .signed().start(Start::StrokeMiddle).stated();
-    h = "h", "m", "half of the stroke", [1e-9, 1e6], [0.4] .log().start(Start::StrokeHalf).stated();
+        [-1e6, 1e6], [0.1] .signed();
+    h = "h", "m", "half of the stroke", [1e-9, 1e6], [0.4] .log();
 }
 
 impl<T: Real> StrokeDependence<T> {

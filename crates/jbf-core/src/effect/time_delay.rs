@@ -13,7 +13,6 @@ use super::{Effect, Info, Rig, Signal, Stage};
 use crate::delay_line::DelayLine;
 use crate::described::described;
 use crate::motion::Motion;
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Time delay of the recorded force relative to the recorded motion.
@@ -37,10 +36,9 @@ described! {
         .limits(
             "one delay for all frequencies and all runs; a filter is sensor_lag; clock drift \
              is not included",
-        )
-        .moves_jumps();
+        );
     tau_s = "tau_s", "s", "delay of the friction record",
-        [0.0, 2.0], [0.025, 0.085, 0.235] null(0.0) .start(Start::Lateness);
+        [0.0, 2.0], [0.025, 0.085, 0.235] null(0.0);
 }
 
 impl<T: Real> TimeDelay<T> {

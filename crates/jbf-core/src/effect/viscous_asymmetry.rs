@@ -12,7 +12,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Viscous friction whose slope differs between the two directions.
@@ -29,7 +28,7 @@ described! {
         .limits("linear in the speed, one slope per direction; identical slopes for b = 0")
         .needs(&[Need::NoFilm]);
     b = "b", "N s/m", "half of the difference of the slopes between the directions",
-        [-1e7, 1e7], [1.0] null(0.0) .signed().start(Start::Damping);
+        [-1e7, 1e7], [1.0] null(0.0) .signed();
 }
 
 impl<T: Real> ViscousAsymmetry<T> {

@@ -13,7 +13,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Viscous friction that grows less than proportionally to the speed.
@@ -33,7 +32,7 @@ described! {
         )
         .needs(&[Need::NoFilm]);
     w = "w", "s/m", "inverse of the speed at which the viscous friction is half of the linear value",
-        [0.0, 1e6], [10.0] null(0.0) .start(Start::Slowness);
+        [0.0, 1e6], [10.0] null(0.0);
 }
 
 impl<T: Real> ViscousThinning<T> {

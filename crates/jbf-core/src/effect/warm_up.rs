@@ -18,7 +18,6 @@ use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Excess friction that decays with time.
@@ -37,7 +36,7 @@ described! {
         .needs(&[Need::NoFilm]);
     a = "a", "-", "relative excess of the cold drive", [-0.95, 10.0], [0.2] null(0.0);
     tau_s = "tau_s", "s", "time in which the excess decays to 1/e",
-        [0.1, 1e5], [10.0, 60.0] .log().start(Start::RunTime);
+        [0.1, 1e5], [10.0, 60.0] .log();
 }
 
 impl<T: Real> WarmUp<T> {

@@ -33,7 +33,6 @@ use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::parameter::Start;
 use crate::path::Leg;
 use crate::real::Real;
 
@@ -101,7 +100,7 @@ described! {
         .limits("no Stribeck effect, no static friction above F_c; inner loops drift");
     F_c;
     sigma_0 = "sigma_0", "N/m", "stiffness at a reversal",
-        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log();
     exponent = "exponent", "-", "shape of the transition: below 1 ductile, above 1 brittle",
         [0.01, 5.0], [1.0] .log();
     F_v;

@@ -38,7 +38,6 @@ use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::parameter::Start;
 use crate::path::Leg;
 use crate::real::Real;
 
@@ -90,7 +89,7 @@ described! {
         .limits("no Stribeck effect of its own; inner loops beyond the breakaway force drift");
     F_c;
     sigma_0 = "sigma_0", "N/m", "stiffness up to breakaway",
-        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log();
     breakaway = "breakaway", "-", "fraction of F_c up to which the contact is elastic",
         [0.0, 0.999], [0.7, 0.2];
     F_v;

@@ -36,7 +36,6 @@ use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::parameter::Start;
 use crate::path::legs;
 use crate::real::Real;
 
@@ -88,11 +87,11 @@ described! {
     F_s;
     v_s;
     sigma_0 = "sigma_0", "N/m", "stiffness of the bristles",
-        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log();
     sigma_1 = "sigma_1", "N s/m", "damping of the bristles",
-        [0.0, 1e7], [100.0] .start(Start::Damping);
+        [0.0, 1e7], [100.0];
     v_d = "v_d", "m/s", "speed at which the damping has decayed to 1/e",
-        [1e-7, 1e3], [0.1] .log().start(Start::UsualSpeed);
+        [1e-7, 1e3], [0.1] .log();
     F_v;
 }
 

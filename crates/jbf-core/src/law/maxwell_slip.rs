@@ -56,7 +56,6 @@ use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::parameter::Start;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
@@ -155,7 +154,7 @@ described! {
         .limits("no Stribeck effect of its own; no frictional lag in sliding");
     F_c;
     sigma_0 = "sigma_0", "N/m", "stiffness at a reversal",
-        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log();
     exponent = "exponent", "-", "shape of the transition: near 0 all slip at once, 1/3 a sphere, 1 an exponential",
         [0.01, 2.0], [0.5, 0.1] .log();
     F_v;

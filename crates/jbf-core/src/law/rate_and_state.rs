@@ -52,7 +52,6 @@ use super::{Info, Law, SteadyCurve};
 use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
-use crate::parameter::Start;
 use crate::real::Real;
 
 /// Smallest and largest age of a contact, s; the limits prevent an overflow in single precision.
@@ -151,15 +150,15 @@ described! {
         )
         .with_a_dry_level();
     f_0 = "F_0", "N", "friction in steady sliding at the speed v_0, without the viscous part",
-        [1e-6, 1e7], [10.0] .log().start(Start::Kinetic);
+        [1e-6, 1e7], [10.0] .log();
     a = "a", "N", "direct effect: immediate increase of friction per e-fold of the speed",
-        [0.0, 1e7], [0.1] .start(Start::Drag);
+        [0.0, 1e7], [0.1];
     b = "b", "N", "ageing effect: increase of friction per e-fold of the contact age",
-        [0.0, 1e7], [0.15] .start(Start::Drag);
+        [0.0, 1e7], [0.15];
     d_c = "D_c", "m", "slip distance over which the contact is renewed",
-        [1e-12, 1e3], [1e-5, 1e-4, 1e-6] .log().start(Start::SlipDistance);
+        [1e-12, 1e3], [1e-5, 1e-4, 1e-6] .log();
     v_0 = "v_0", "m/s", "reference speed of F_0",
-        [1e-7, 1e3], [0.01] .log().start(Start::UsualSpeed).stated();
+        [1e-7, 1e3], [0.01] .log();
     F_v;
 }
 

@@ -38,7 +38,6 @@ use crate::described::described;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::parameter::Start;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
@@ -132,11 +131,11 @@ described! {
         .source("Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1")
         .limits("switches between stuck and sliding; growing static friction needs tau_L > 0");
     k_t = "k_t", "N/m", "stiffness of the stuck contact",
-        [1e-2, 1e12], [1e5, 1e6, 1e4] .log().start(Start::Stiffness);
+        [1e-2, 1e12], [1e5, 1e6, 1e4] .log();
     F_c;
     F_v;
     f_s_inf = "F_s_inf", "N", "Stribeck friction after a long rest; breakaway is at F_c + F_s",
-        [1e-6, 1e7], [3.0] .log().start(Start::BreakawayExcess);
+        [1e-6, 1e7], [3.0] .log();
     v_s;
     // The delay may be zero, so it is not a scale.
     tau_l_s = "tau_L_s", "s", "delay of friction relative to the speed", [0.0, 1.0], [0.01, 0.1];

@@ -19,7 +19,7 @@ fn angles(f: f64, c: f64, dt_s: f64, steps: u32, motion: impl Fn(f64) -> Motion<
     (1..=steps)
         .map(|i| {
             chain.step(&mut state, &motion(dt_s * f64::from(i)), dt_s);
-            state.journal().angle_rad
+            state.journal.angle_rad
         })
         .collect()
 }

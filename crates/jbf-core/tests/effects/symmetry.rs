@@ -3,8 +3,8 @@
 use crate::common::motion::Sines;
 use crate::common::random::Random;
 use crate::common::{chain, readings};
+use jbf_core::effect::Mirror;
 use jbf_core::effect::{Info, CATALOGUE};
-use jbf_core::parameter::Mirror;
 
 /// Parameters of the mirrored machine; the description of a parameter states whether its sign
 /// changes.

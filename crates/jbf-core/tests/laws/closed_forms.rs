@@ -154,11 +154,11 @@ fn coulomb_friction_behind_a_compliant_drive_sticks_to_f_s_and_slides_at_f_c() {
     for i in 1..2000 {
         let t = dt * f64::from(i);
         let force = chain.step(&mut state, &at(t), dt);
-        if state.journal().velocity_m_s == 0.0 && broke_at == 0.0 {
+        if state.journal.velocity_m_s == 0.0 && broke_at == 0.0 {
             peak = peak.max(force);
         } else if broke_at == 0.0 {
             broke_at = t;
-        } else if state.journal().velocity_m_s > 0.0 {
+        } else if state.journal.velocity_m_s > 0.0 {
             assert!(
                 (force - 6.0).abs() < 1e-9 || t < broke_at + 2.0 * dt,
                 "{t} {force}"

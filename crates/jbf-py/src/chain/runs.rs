@@ -1,9 +1,9 @@
 //! Rate of the film and number of inner steps of a chain along motions.
 
 use crate::motion::Motion;
+use jbf_catalogue::Using;
 use jbf_core::law::Named;
 use jbf_core::run;
-use jbf_core::spec::Using;
 use jbf_core::Chain;
 
 /// Computes the fastest rate of the film along any of the motions, 1/s.

@@ -2,11 +2,11 @@
 
 use crate::bearing::{refused, Sizes};
 use crate::names;
-use jbf_core::spec::Spec;
+use jbf_catalogue::Spec;
 use jbf_core::Real;
 use pyo3::prelude::*;
 
-pub use jbf_core::spec::Using;
+pub use jbf_catalogue::Using;
 
 /// Names of the law and the effects, and the values of their parameters in the order of the
 /// catalogue.

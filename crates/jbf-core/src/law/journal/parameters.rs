@@ -6,7 +6,6 @@
 #[cfg(doc)]
 use super::Journal;
 use crate::described::described;
-use crate::parameter::Bound;
 
 /// Physical meaning of the journal law for the catalogue, in one line.
 pub(in crate::law) const SUMMARY: &str =
@@ -17,7 +16,7 @@ described! {
     f_m = "f_m", "-", "maximum friction coefficient of the asperities",
         [1e-4, 10.0], [0.25] .log();
     u_tr_m_s = "U_tr_m_s", "m/s", "transition speed from mixed to full film",
-        [1e-5, 1e2], [0.055] .log().bound(Bound::TransitionSpeed);
+        [1e-5, 1e2], [0.055] .log();
     k0 = "K0", "-", "asperity stiffness constant",
         [1.0, 1e9], [6.5e5] .log();
     gamma = "gamma", "-", "slope factor of the viscous term",

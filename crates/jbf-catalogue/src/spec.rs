@@ -4,13 +4,9 @@
 //! Files, Python and fingerprints use this form. Values are in the order of the descriptions of the
 //! parameters.
 
-use crate::bearing::Bearing;
-use crate::chain::Chain;
-use crate::clock::Clock;
-use crate::effect::{Effects, Rig};
-use crate::error::ParameterError;
-use crate::law::{with_law, Named, Visitor};
-use crate::real::Real;
+use jbf_core::effect::Effects;
+use jbf_core::law::{with_law, Named, Visitor};
+use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
 
 /// Name of a law with the arguments of its constructor.
 #[derive(Clone, Copy, Debug)]
@@ -46,10 +42,10 @@ impl<T: Real, U: Using<T>> Visitor<T> for Build<'_, T, U> {
     type Output = U::Output;
 
     fn visit<L: Named<T>>(self, law: L) -> U::Output {
-        self.then.with(Chain {
-            law,
-            effects: self.effects,
-            rig: Rig::on(self.bearing),
+        let chain = Chain::new(law).with_effects(self.effects);
+        self.then.with(match self.bearing {
+            Some(bearing) => chain.on(bearing),
+            None => chain,
         })
     }
 }

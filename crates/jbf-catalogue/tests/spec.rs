@@ -2,14 +2,24 @@
 //!
 //! Invalid lists are refused with the name of the parameter.
 
-mod common;
+use jbf_catalogue::{Spec, Using};
+use jbf_core::effect::coulomb_drag::{self, CoulombDrag};
+use jbf_core::effect::sensor_lag::{self, SensorLag};
+use jbf_core::effect::{Effect, Rig};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::{Law, Named};
+use jbf_core::{Bearing, Chain, Clock, Motion, ParameterError};
 
-use common::motion::Sines;
-use common::{chain_round, law, readings, LOAD_N};
-use jbf_core::effect::Rig;
-use jbf_core::law::Named;
-use jbf_core::spec::{Spec, Using};
-use jbf_core::{Bearing, Chain, Clock, ParameterError};
+/// Load on one bearing, N.
+const LOAD_N: f64 = 104.0;
+
+/// Readings of a chain along a motion with reversals.
+fn readings<L: Law<f64>, E: Effect<f64>>(chain: &Chain<f64, L, E>) -> Vec<f64> {
+    let mut state = chain.start(&Motion::at_rest(LOAD_N));
+    (0..300)
+        .map(|i| chain.step_velocity(&mut state, 0.1 * (0.02 * f64::from(i)).sin(), 0.01))
+        .collect()
+}
 
 /// Computes the readings along a motion, and the properties of the rig.
 struct Along;
@@ -18,8 +28,7 @@ impl Using<f64> for Along {
     type Output = (Vec<f64>, Rig<f64>);
 
     fn with<L: Named<f64>>(self, chain: Chain<f64, L>) -> Self::Output {
-        let sines = Sines::two_way(1.0);
-        (readings(&chain, 0.01, 300, |t| sines.at(t)), chain.rig)
+        (readings(&chain), chain.rig)
     }
 }
 
@@ -45,9 +54,12 @@ fn built(
 fn chain_from_names_equals_the_chain_from_types() {
     let effects: [(&str, &[f64]); 2] = [("sensor_lag", &[0.1]), ("coulomb_drag", &[0.8])];
     let (named, rig) = built("journal", &TABLE_4_2, &effects).expect("valid");
-    let sines = Sines::two_way(1.0);
-    let by_hand = chain_round(law::<f64>(Clock::Journal), &effects);
-    assert_eq!(named, readings(&by_hand, 0.01, 300, |t| sines.at(t)));
+    let bearing = Bearing::THESIS;
+    let law = Journal::new(&bearing, LOAD_N, &Parameters::TABLE_4_2, Clock::Journal);
+    let lag = SensorLag::new(sensor_lag::Parameters { tau_s: 0.1 }).expect("valid");
+    let drag = CoulombDrag::new(coulomb_drag::Parameters { f_d: 0.8 }).expect("valid");
+    let typed = Chain::new(law.expect("valid")).with(lag).with(drag);
+    assert_eq!(named, readings(&typed.on(&bearing)));
     assert_eq!((rig.radius_m, rig.count), (0.0127, 4.0));
     // Without a bearing the axis is a linear one.
     let (_, rig) = built("coulomb", &[6.0, 9.0, 40.0], &[]).expect("valid");

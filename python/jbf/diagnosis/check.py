@@ -1,8 +1,8 @@
 """Simulation study of the diagnosis on the user's rig: complete diagnoses of similar campaigns.
 
 The fitted model simulates records of the same motions (`estimation.bootstrap`): a number of
-campaigns with the effects of the model, and the same number without them. Each is diagnosed like
-the measured campaign.
+campaigns with the effects of the model, and the same number without them. The machine terms of a
+drive are in all of them. Each campaign is diagnosed like the measured one.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
 from typing import Any
 
+from jbf.diagnosis.drive import TERMS
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
 from jbf.errors import InputError, JbfError
@@ -146,8 +147,10 @@ class Check(Result):
     def rates(self) -> tuple[Rate, ...]:
         """Frequencies of correct and false results, first in campaigns without hidden effects."""
         rates: list[Rate] = []
-        for hidden in sorted({a.hidden for a in self.answers}, key=len):
-            answers = [a for a in self.answers if a.hidden == hidden]
+        machine = machine_terms(self.model)
+        for simulated in sorted({a.hidden for a in self.answers}, key=len):
+            answers = [a for a in self.answers if a.hidden == simulated]
+            hidden = [name for name in simulated if name not in machine]
             if hidden:
                 outcomes = {
                     "named": [set(hidden) <= set(a.effects) for a in answers],
@@ -169,6 +172,11 @@ class Check(Result):
             "rates": [r.to_dict() for r in self.rates],
             "answers": [a.to_dict() for a in self.answers],
         }
+
+
+def machine_terms(model: Model) -> Names:
+    """Terms of the machine in a model of a drive: inertia, weight and offset."""
+    return tuple(n for n in model.effects if n in TERMS and model.rig.drive is not None)
 
 
 @dataclass(frozen=True)
@@ -205,7 +213,8 @@ def check(
 ) -> Check:
     """Diagnose simulated campaigns like the present one, with and without the model's effects.
 
-    It takes `campaigns` diagnoses, or twice that number if the model has effects.
+    It takes `campaigns` diagnoses, or twice that number if the model has effects. The inertia,
+    weight and offset of a drive are in all campaigns.
 
     Parameters
     ----------
@@ -262,7 +271,7 @@ def check(
     every = tuple(list_of_runs(runs))
     answers = list(done)
     finished = {(a.hidden, a.draw) for a in answers}
-    hidden = dict.fromkeys([(), tuple(model.effects)])
+    hidden = dict.fromkeys([machine_terms(model), tuple(model.effects)])
     tasks = [
         _Task(model, every, effects, draw, policy)
         for draw in range(campaigns)

@@ -157,7 +157,7 @@ def test_interrupted_check_continues_from_its_answers(command: list[str], tmp_pa
     assert len(kept.read_text().splitlines()) == 2
 
 
-def test_machine_terms_of_a_drive_count_as_identified_effects_in_a_check() -> None:
+def test_machine_terms_of_a_drive_are_in_the_campaigns_without_hidden_effects() -> None:
     """A model with inertia and weight, and the runs of a reciprocating joint."""
     rig = Rig(drive=Drive("rotary", "torque"))
     time = np.arange(0.0, 12.0, 0.02)
@@ -173,4 +173,6 @@ def test_machine_terms_of_a_drive_count_as_identified_effects_in_a_check() -> No
     rng = np.random.default_rng(2)
     runs = [replace(run, friction=model.predict(run) + 0.01 * rng.normal(size=600)) for run in runs]
     found = check(model, runs, campaigns=1)
-    assert [answer.right for answer in found.answers] == [True, True]
+    assert [answer.hidden for answer in found.answers] == [("inertia", "gravity")]
+    assert [answer.right for answer in found.answers] == [True]
+    assert {r.what: r.count for r in found.rates}["nothing hidden: adequate"] == 1

@@ -37,13 +37,16 @@ VALUES = {
 }  # fmt: skip
 HEAD = """# Measured losses of the export targets
 
-This page shows what each target of `jbf export --to` loses of each law, for users who choose a
-target. Each law has typical values (F_c 5 N m, F_s 8 N m, Stribeck velocity 0.1 rad/s, F_v 2 N m
-s/rad, stiffness 2000 N m/rad) and moves along 4 s of a modulated sine of 0.8 rad/s amplitude,
-sampled at 5 ms. The figures are the RMS error in sliding, as a share of the RMS friction: first the
-one that the ledger states, then the one that an independent run of the written file has. A dash
-marks a law that the target refuses ([all laws and effects](targets.md)). The time step of MuJoCo is
-0.5 ms for the stated and 0.25 ms for the measured error. FMUs contain the file of `c`.
+This page lists the error of each law in each target of `jbf export --to`, for users who choose a
+target. Each law has typical values (F_c 5 N m, F_s 8 N m, Stribeck velocity 0.1 rad/s, F_v
+2 N m s/rad, stiffness 2000 N m/rad) and moves along 4 s of a modulated sine with a speed amplitude
+of 0.8 rad/s, sampled at 5 ms. The figures are the RMS error relative to the exact law, as a share
+of the RMS friction. Samples at rest or with an unknown direction of sliding are excluded; those
+after a reversal, where a bristle deflects, are included. In each cell the first figure is the loss
+that the ledger of the export states, and the second is measured by an independent run of the
+written file. A dash marks a law that the target refuses ([all laws and effects](targets.md)). The
+time step of MuJoCo is 0.5 ms for the stated and 0.25 ms for the measured error. `fmu2` and `fmu3`
+have the losses of `c`, whose code they contain.
 
 *(Written by `docs/target_losses.py`.)*
 

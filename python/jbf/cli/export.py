@@ -37,8 +37,8 @@ def add(commands: Commands) -> None:
         "runs",
         metavar="RUN",
         nargs="*",
-        help="with --to: CSV file of a run along which the loss is computed, folder of such files, "
-        "or pattern; usually those that the model was fitted to",
+        help="required with --to: CSV file of a run along which the loss is computed, folder of "
+        "such files, or pattern; usually the runs that the model was fitted to",
     )
     parser.add_argument(
         "--rust", metavar="FILE.rs", help="write a Rust module for jbf-core (- for standard output)"
@@ -63,8 +63,8 @@ def add(commands: Commands) -> None:
         "--max-loss",
         metavar="SHARE",
         type=float,
-        help="with --to: refuse an export whose RMS error exceeds this share of the RMS friction, "
-        "such as 0.05",
+        help="with --to: refuse an export whose loss (RMS error relative to the model) exceeds "
+        "this share of the RMS friction, such as 0.05",
     )
     add_json(parser)
     add_effects_from(parser)
@@ -80,8 +80,8 @@ def add(commands: Commands) -> None:
         "--joint",
         metavar="NAME",
         default=default.joint,
-        help="code, FMU, simulators: name of the joint, which is the prefix of names in code; "
-        f"default {default.joint}",
+        help="c, st, FMU, modelica, simulators: name of the joint, and prefix of the names in "
+        f"code; default {default.joint}",
     )
     parser.add_argument(
         "--precision",
@@ -94,14 +94,14 @@ def add(commands: Commands) -> None:
         "--compensator",
         dest="compensator_file",
         metavar="FILE.toml",
-        help="c: add the compensator whose model an observer corrects, with the settings in this "
-        "file",
+        help="c: add the friction compensator in which an observer corrects the model, with the "
+        "settings in this file",
     )
     parser.add_argument(
         "--mujoco",
         metavar="VERSION",
         default=default.mujoco,
-        help="mjcf: version of MuJoCo whose elements may be used, such as 3.3; "
+        help="mjcf: use only elements that this version of MuJoCo has, such as 3.3; "
         f"default {default.mujoco}",
     )
 

@@ -13,7 +13,7 @@ from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
 from typing import Any
 
-from jbf.diagnosis.drive import TERMS
+from jbf.diagnosis.drive import machine_of
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
 from jbf.errors import InputError, JbfError
@@ -147,7 +147,7 @@ class Check(Result):
     def rates(self) -> tuple[Rate, ...]:
         """Frequencies of correct and false results, first in campaigns without hidden effects."""
         rates: list[Rate] = []
-        machine = machine_terms(self.model)
+        machine = machine_of(self.model.rig, self.model.effects)
         for simulated in sorted({a.hidden for a in self.answers}, key=len):
             answers = [a for a in self.answers if a.hidden == simulated]
             hidden = [name for name in simulated if name not in machine]
@@ -172,11 +172,6 @@ class Check(Result):
             "rates": [r.to_dict() for r in self.rates],
             "answers": [a.to_dict() for a in self.answers],
         }
-
-
-def machine_terms(model: Model) -> Names:
-    """Terms of the machine in a model of a drive: inertia, weight and offset."""
-    return tuple(n for n in model.effects if n in TERMS and model.rig.drive is not None)
 
 
 @dataclass(frozen=True)
@@ -271,7 +266,7 @@ def check(
     every = tuple(list_of_runs(runs))
     answers = list(done)
     finished = {(a.hidden, a.draw) for a in answers}
-    hidden = dict.fromkeys([machine_terms(model), tuple(model.effects)])
+    hidden = dict.fromkeys([machine_of(model.rig, model.effects), tuple(model.effects)])
     tasks = [
         _Task(model, every, effects, draw, policy)
         for draw in range(campaigns)

@@ -13,6 +13,7 @@ from dataclasses import replace
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.generalised_least_squares import with_motion_errors
+from jbf.records.rig import Rig
 
 Names = tuple[str, ...]
 
@@ -21,11 +22,9 @@ TERMS = (OFFSET, "inertia", "gravity")
 """Effects that are not friction and that no law can represent."""
 
 
-def machine_of(candidates: Candidates, present: Iterable[str]) -> Names:
+def machine_of(rig: Rig, present: Iterable[str]) -> Names:
     """Machine terms among the effects `present` in a model; empty for a rig without a drive."""
-    if candidates.campaign.rig.drive is None:
-        return ()
-    return tuple(name for name in present if name in TERMS)
+    return () if rig.drive is None else tuple(name for name in present if name in TERMS)
 
 
 def with_errors_of_motion(candidates: Candidates, base: Names) -> Campaign | None:

@@ -285,7 +285,7 @@ def _with_law(
         before = _before(candidates)
         remains = (*remainder_of(candidates, present), *refused)
         doubted = confounders(candidates, present, remains) if remains else ()
-        machine = machine_of(candidates, present)
+        machine = machine_of(candidates.campaign.rig, present)
         named = tuple(name for name in present if name not in doubted)
         if doubted and not remainder_of(candidates, named):
             # The model without the confounders has no residual structure: remove them.
@@ -332,7 +332,7 @@ def _with_law(
     return Diagnosis(
         verdict=answer,
         effects=missing,
-        machine=machine_of(candidates, kept),
+        machine=machine_of(candidates.campaign.rig, kept),
         alternatives=equal,
         weights=posterior,
         steps=tuple(steps),

@@ -317,7 +317,7 @@ def start_model(candidates: Candidates) -> Names:
     of all terms may end at a weight of zero.
     """
     present: Names = ()
-    for name in machine_of(candidates, [n for n in TERMS if n in candidates.names]):
+    for name in machine_of(candidates.campaign.rig, [n for n in TERMS if n in candidates.names]):
         near = candidates.converge(present)
         present = (*present, name)
         candidates.look(present, near)
@@ -362,7 +362,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         if not needed(candidates, current, name, simpler):
             current = rest
             continue
-        if name in machine_of(candidates, current) and name != OFFSET:
+        if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
             continue  # inertia and weight do not imitate an effect; an offset may
         others = [
             other

@@ -86,7 +86,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
     share, policy = effective_share(full), candidates.policy
     largest = max((r.share for r in remains), default=0.0)
     doubted = []
-    machine = machine_of(candidates, present)
+    machine = machine_of(candidates.campaign.rig, present)
     for name in present:
         if name in machine:
             continue

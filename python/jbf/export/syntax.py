@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import ClassVar
 
@@ -15,7 +16,7 @@ NUMBER = ("real", "time", "int", "bool")
 """Types that are not structures; a local name without annotation is `real`."""
 
 
-class Syntax:
+class Syntax(ABC):
     """Syntax of a language: statements and expressions.
 
     A subclass defines the class attributes, and `_call` and what else differs.
@@ -55,8 +56,9 @@ class Syntax:
     def _index(self, node: ast.expr) -> str:
         return self.expression(node)
 
+    @abstractmethod
     def _call(self, name: str, arguments: list[ast.expr]) -> str:
-        raise NotImplementedError
+        """Text of a call of a function."""
 
     def _value(self, text: str) -> str:
         """Text of a value that is assigned."""

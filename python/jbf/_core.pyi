@@ -28,6 +28,7 @@ __all__ = [
     "Motion",
     "MotionErrorChain",
     "MotionReadings",
+    "MotionWhitening",
     "SmoothedMotion",
     "__version__",
     "control_constants",
@@ -44,7 +45,6 @@ __all__ = [
     "thesis_bearing",
     "trajectories",
     "transition_eccentricity",
-    "whiten_motion_errors",
 ]
 
 __version__: str
@@ -250,12 +250,19 @@ class SmoothedMotion:
 class MotionErrorChain:
     def __new__(cls, posterior: _Array, gain: _Array) -> Self: ...
 
-def whiten_motion_errors(
-    chains: Sequence[MotionErrorChain],
-    sensitivity: Sequence[_Array],
-    variance: Sequence[_Array],
-    columns: Sequence[_Array],
-) -> list[tuple[_Array, float]]: ...
+@final
+class MotionWhitening:
+    def __new__(
+        cls,
+        chains: Sequence[MotionErrorChain | None],
+        sensitivity: Sequence[_Array],
+        ratio: float,
+        weight: Sequence[_Array],
+    ) -> Self: ...
+    @property
+    def log_determinant(self) -> float: ...
+    def whiten(self, columns: Sequence[_Array], runs: Sequence[int]) -> list[_Array]: ...
+
 def first_order_filter(now: tuple[float, float], before: float, values: _Array) -> _Array: ...
 def read_force(
     effects: Sequence[tuple[str, Sequence[float]]], time_s: _Array, force_n: _Array

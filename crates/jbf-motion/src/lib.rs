@@ -13,7 +13,7 @@
 //! [`estimate`] estimates the variances of the readings and the intensity of each step by
 //! expectation-maximisation. [`smooth`] returns the posterior mean and covariance of the state at
 //! each sample, the log-likelihood of the readings and the squared disturbance of each step.
-//! [`ErrorChain::whiten`] turns residuals that contain a linear function of the motion's errors
+//! [`ErrorChain::filter`] turns residuals that contain a linear function of the motion's errors
 //! into independent ones.
 //!
 //! Sources: Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*
@@ -27,4 +27,4 @@ mod whitening;
 
 pub use estimation::{estimate, lower_bound, Known, Passes, ReadingErrors, Record};
 pub use smoother::{log_likelihood, smooth, LinearReading, Readings, Smoothed};
-pub use whitening::ErrorChain;
+pub use whitening::{ErrorChain, WhiteningFilter};

@@ -1,7 +1,7 @@
 //! Whitening of residuals that contain the errors of a recorded motion.
 
 use crate::model::{symmetric, Square, State, Update};
-use nalgebra::Vector3;
+use nalgebra::{SMatrix, SVector, Vector3};
 
 /// Errors of a motion as a Markov chain backward in time, in units of their standard errors.
 ///
@@ -66,60 +66,112 @@ impl<const N: usize> ErrorChain<N> {
         self.scale.is_empty()
     }
 
-    /// Whitens columns of residuals that contain the errors of the motion, in place.
+    /// Creates the filter that whitens residuals with errors of the motion.
     ///
-    /// A residual is `r[k] = e[k] + s[k] (x[k] - mean[k])`, with independent `e[k] ~ N(0,
-    /// variance[k])` and x the motion of a posterior.
+    /// A residual is `r[k] = e[k] / weight[k] + s[k] (x[k] - mean[k])`, with independent
+    /// `e[k] ~ N(0, 1)` and x the motion of a posterior.
     ///
     /// # Arguments
     /// * `sensitivity`: s, derivatives of the prediction with respect to position, velocity and
-    ///   acceleration, for each of n instants; in units of the residual per unit of each.
-    /// * `variance`: of e, (n,); a sample with an infinite variance is excluded and set to zero.
-    /// * `columns`: n rows of `width` values, for instance the residual and its derivatives with
-    ///   respect to parameters; each column is filtered in the same way.
-    ///
-    /// Returns the logarithm of the determinant of the covariance of the included samples.
+    ///   acceleration, for each of n instants; in standard deviations of e per unit of each.
+    /// * `weight`: (n,); a sample with weight zero is excluded.
     ///
     /// # Algorithm
     /// The posterior is a Markov chain backward in time. A Kalman filter along it, from the last
-    /// sample to the first, has independent innovations.
-    pub fn whiten(
-        &self,
-        sensitivity: &[Vector3<f64>],
-        variance: &[f64],
-        width: usize,
-        columns: &mut [f64],
-    ) -> f64 {
-        let n = self.len().min(sensitivity.len()).min(variance.len());
-        if n == 0 || width == 0 || columns.len() < n * width {
-            return 0.0;
-        }
+    /// sample to the first, has independent innovations. Its gains do not depend on the residuals.
+    pub fn filter(&self, sensitivity: &[Vector3<f64>], weight: &[f64]) -> WhiteningFilter<N> {
+        let n = self.len().min(sensitivity.len()).min(weight.len());
         let mut covariance = Square::zeros();
-        let mut means = vec![State::zeros(); width];
         let mut log_determinant = 0.0;
+        let mut steps = Vec::with_capacity(n);
         for k in (0..n).rev() {
             let back = &self.back[k];
             covariance = symmetric(&(self.conditional[k] + back * covariance * back.transpose()));
-            for mean in &mut means {
-                *mean = back * *mean;
+            let mut step = FilterStep {
+                back: *back,
+                row: State::zeros(),
+                gain: State::zeros(),
+                reciprocal: 0.0,
+            };
+            let variance = weight[k].powi(-2);
+            if variance.is_finite() {
+                let scale = &self.scale[k];
+                step.row =
+                    State::from_fn(|i, _| sensitivity[k].get(i).map_or(0.0, |s| s * scale[i]));
+                let update = Update::new(&step.row, variance, &covariance);
+                step.gain = update.gain;
+                step.reciprocal = update.variance.sqrt().recip();
+                covariance = update.posterior(&step.row, variance, &covariance);
+                log_determinant += update.variance.ln();
             }
-            let values = &mut columns[k * width..(k + 1) * width];
-            if !variance[k].is_finite() {
+            steps.push(step);
+        }
+        WhiteningFilter {
+            steps,
+            log_determinant,
+        }
+    }
+}
+
+/// Filter that whitens residuals of one run, see [`ErrorChain::filter`].
+#[derive(Clone, Debug)]
+pub struct WhiteningFilter<const N: usize> {
+    /// Steps from the last sample to the first.
+    steps: Vec<FilterStep<N>>,
+    /// Logarithm of the determinant of the covariance of the included samples.
+    pub log_determinant: f64,
+}
+
+/// Step of a filter to the preceding sample.
+#[derive(Clone, Debug)]
+struct FilterStep<const N: usize> {
+    /// Regression of the errors on those at the sample of the last step.
+    back: Square<N>,
+    /// Sensitivity of the residual to the errors.
+    row: State<N>,
+    /// Gain of the filter.
+    gain: State<N>,
+    /// Reciprocal of the standard deviation of the innovation; zero for an excluded sample.
+    reciprocal: f64,
+}
+
+impl<const N: usize> WhiteningFilter<N> {
+    /// Whitens columns in place; excluded samples are set to zero.
+    ///
+    /// # Arguments
+    /// * `columns`: n rows of `width` values, for instance the residual and its derivatives with
+    ///   respect to parameters; each column is filtered in the same way.
+    pub fn whiten(&self, width: usize, columns: &mut [f64]) {
+        let mut first = 0;
+        while first < width {
+            first += match width - first {
+                8.. => self.whiten_columns::<8>(first, width, columns),
+                4.. => self.whiten_columns::<4>(first, width, columns),
+                2.. => self.whiten_columns::<2>(first, width, columns),
+                _ => self.whiten_columns::<1>(first, width, columns),
+            };
+        }
+    }
+
+    /// Whitens `W` adjacent columns, and returns `W`.
+    fn whiten_columns<const W: usize>(
+        &self,
+        first: usize,
+        width: usize,
+        columns: &mut [f64],
+    ) -> usize {
+        let mut means = SMatrix::<f64, W, N>::zeros();
+        for (step, row) in self.steps.iter().zip(columns.chunks_exact_mut(width).rev()) {
+            means *= step.back.transpose();
+            let values = &mut row[first..first + W];
+            if step.reciprocal == 0.0 {
                 values.fill(0.0);
                 continue;
             }
-            let scale = &self.scale[k];
-            let row = State::from_fn(|i, _| sensitivity[k].get(i).map_or(0.0, |s| s * scale[i]));
-            let update = Update::new(&row, variance[k], &covariance);
-            let standard = update.variance.sqrt();
-            for (value, mean) in values.iter_mut().zip(&mut means) {
-                let innovation = *value - row.dot(mean);
-                *mean += update.gain * innovation;
-                *value = innovation / standard;
-            }
-            covariance = update.posterior(&row, variance[k], &covariance);
-            log_determinant += update.variance.ln();
+            let innovation = SVector::<f64, W>::from_column_slice(values) - means * step.row;
+            means += innovation * step.gain.transpose();
+            values.copy_from_slice((innovation * step.reciprocal).as_slice());
         }
-        log_determinant
+        W
     }
 }

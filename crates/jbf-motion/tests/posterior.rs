@@ -185,8 +185,8 @@ fn whitened_columns_have_the_scalar_products_of_the_dense_covariance() {
         let sensitivity: Vec<Vector3<f64>> = (0..SAMPLES)
             .map(|k| Vector3::new(0.2, -0.5 + 0.1 * k as f64, 0.3))
             .collect();
-        let mut variance = vec![1e-3; SAMPLES];
-        variance[4] = INF;
+        let mut weight = vec![1e-3_f64.sqrt().recip(); SAMPLES];
+        weight[4] = 0.0;
         let kept: Vec<usize> = (0..SAMPLES).filter(|k| *k != 4).collect();
         let rows = DMatrix::from_fn(SAMPLES, N * SAMPLES, |k, j| {
             if j / N == k {
@@ -198,15 +198,18 @@ fn whitened_columns_have_the_scalar_products_of_the_dense_covariance() {
         let full =
             &rows * covariance * rows.transpose() + DMatrix::identity(SAMPLES, SAMPLES) * 1e-3;
         let part = full.select_rows(&kept).select_columns(&kept);
-        let columns = DMatrix::from_fn(SAMPLES, 2, |k, j| (1.3 * k as f64 + 2.0 * j as f64).sin());
+        const WIDTH: usize = 15;
+        let columns =
+            DMatrix::from_fn(SAMPLES, WIDTH, |k, j| (1.3 * k as f64 + 2.0 * j as f64).sin());
         let mut flat: Vec<f64> = columns.transpose().iter().copied().collect();
         let chain = ErrorChain::new(&found.covariance, &found.gain);
-        let log_determinant = chain.whiten(&sensitivity, &variance, 2, &mut flat);
-        let white = DMatrix::from_row_slice(SAMPLES, 2, &flat);
+        let filter = chain.filter(&sensitivity, &weight);
+        filter.whiten(WIDTH, &mut flat);
+        let white = DMatrix::from_row_slice(SAMPLES, WIDTH, &flat);
         let few = columns.select_rows(&kept);
         let expected = few.transpose() * part.clone().try_inverse().expect("regular") * &few;
         assert!((white.transpose() * &white - &expected).norm() < 1e-3 * expected.norm());
-        assert!((log_determinant - part.determinant().ln()).abs() < 1e-3);
+        assert!((filter.log_determinant - part.determinant().ln()).abs() < 1e-3);
         assert!(white.row(4).iter().all(|value| *value == 0.0));
     }
     of_order::<3>();

@@ -71,6 +71,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<recorded_motion::MotionReadings>()?;
     m.add_class::<recorded_motion::SmoothedMotion>()?;
     m.add_class::<motion_errors::MotionErrorChain>()?;
+    m.add_class::<motion_errors::MotionWhitening>()?;
     m.add_function(wrap_pyfunction!(catalogue::effects, m)?)?;
     m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
@@ -79,7 +80,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::maxwell_slip_elements, m)?)?;
     m.add_function(wrap_pyfunction!(filter::first_order_filter, m)?)?;
     m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
-    m.add_function(wrap_pyfunction!(motion_errors::whiten_motion_errors, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     m.add_function(wrap_pyfunction!(control::constants::thesis_bearing, m)?)?;
     m.add_function(wrap_pyfunction!(control::constants::control_constants, m)?)?;

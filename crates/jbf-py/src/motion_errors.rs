@@ -2,9 +2,9 @@
 
 use crate::pool::on_pool;
 use crate::share::longest_first;
-use jbf_motion::ErrorChain;
+use jbf_motion::{ErrorChain, WhiteningFilter};
 use nalgebra::{SMatrix, Vector3};
-use numpy::ndarray::{Array2, ArrayView3};
+use numpy::ndarray::{Array2, ArrayView1, ArrayView3};
 use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -64,74 +64,151 @@ fn chain_of<const N: usize>(
     ErrorChain::new(&square(posterior), &square(gain))
 }
 
-/// Residuals of one run that contain errors of its motion.
-struct Residuals<'a> {
-    chain: &'a Errors,
-    sensitivity: Vec<Vector3<f64>>,
-    variance: Vec<f64>,
-    columns: Array2<f64>,
+/// Filter of the residuals of one run; without errors of the motion, they are multiplied by the
+/// weights.
+enum Filter {
+    Weights(Vec<f64>),
+    Three(WhiteningFilter<3>),
+    Four(WhiteningFilter<4>),
 }
 
-impl Residuals<'_> {
-    /// Returns the whitened columns and the logarithm of the determinant of their covariance.
-    fn whitened(&self) -> PyResult<(Array2<f64>, f64)> {
-        let (rows, width) = self.columns.dim();
-        let mut flat: Vec<f64> = self.columns.iter().copied().collect();
-        let (s, v) = (&self.sensitivity, &self.variance);
-        let log_determinant = match self.chain {
-            Errors::Three(chain) => chain.whiten(s, v, width, &mut flat),
-            Errors::Four(chain) => chain.whiten(s, v, width, &mut flat),
-        };
-        let white = Array2::from_shape_vec((rows, width), flat)
-            .map_err(|e| PyValueError::new_err(e.to_string()))?;
-        Ok((white, log_determinant))
+impl Filter {
+    fn log_determinant(&self) -> f64 {
+        match self {
+            Self::Weights(weight) => {
+                let used = weight.iter().filter(|w| **w > 0.0);
+                -2.0 * used.map(|w| w.ln()).sum::<f64>()
+            }
+            Self::Three(filter) => filter.log_determinant,
+            Self::Four(filter) => filter.log_determinant,
+        }
+    }
+
+    fn whiten(&self, width: usize, columns: &mut [f64]) {
+        match self {
+            Self::Weights(weight) => {
+                for (row, w) in columns.chunks_exact_mut(width.max(1)).zip(weight) {
+                    row.iter_mut().for_each(|value| *value *= w);
+                }
+            }
+            Self::Three(filter) => filter.whiten(width, columns),
+            Self::Four(filter) => filter.whiten(width, columns),
+        }
     }
 }
 
-/// Whitens columns of residuals that contain errors of a motion, for each of several runs; see
-/// `jbf_motion::ErrorChain::whiten`.
-///
-/// Returns, for each run, the columns, (n, m), and the logarithm of the determinant of their
-/// covariance.
-///
-/// # Errors
-/// If the arrays have other shapes.
-#[pyfunction]
-pub fn whiten_motion_errors<'py>(
-    py: Python<'py>,
-    chains: Vec<Py<MotionErrorChain>>,
-    sensitivity: Vec<PyReadonlyArray2<'py, f64>>,
-    variance: Vec<PyReadonlyArray1<'py, f64>>,
-    columns: Vec<PyReadonlyArray2<'py, f64>>,
-) -> PyResult<Vec<(Bound<'py, PyArray2<f64>>, f64)>> {
-    let arrays = sensitivity.iter().zip(&variance).zip(&columns);
-    let runs: Vec<Residuals<'_>> = chains
-        .iter()
-        .zip(arrays)
-        .map(|(chain, ((s, v), c))| {
-            let (s, v, c) = (s.as_array(), v.as_array(), c.as_array());
-            let (chain, n) = (chain.get(), v.len());
-            if s.dim() != (n, 3) || c.nrows() != n || chain.len() != n {
-                return Err(PyValueError::new_err(format!(
-                    "{} instants, sensitivity {:?}, {n} variances and columns {:?}",
-                    chain.len(),
-                    s.dim(),
-                    c.dim()
-                )));
-            }
-            let rows = s.rows().into_iter();
-            Ok(Residuals {
-                chain: &chain.0,
-                sensitivity: rows.map(|r| Vector3::new(r[0], r[1], r[2])).collect(),
-                variance: v.to_vec(),
-                columns: c.to_owned(),
+/// Filter that whitens residuals with errors of the motion, for a set of runs; see
+/// `jbf_motion::ErrorChain::filter`.
+#[pyclass(module = "jbf._core", frozen)]
+pub struct MotionWhitening {
+    filters: Vec<Filter>,
+    lengths: Vec<usize>,
+    /// Logarithm of the determinant of the covariance of all included samples.
+    #[pyo3(get)]
+    log_determinant: f64,
+}
+
+/// Run for which a filter is created.
+struct Posed<'a> {
+    errors: Option<&'a Errors>,
+    sensitivity: Vec<Vector3<f64>>,
+    weight: Vec<f64>,
+}
+
+impl Posed<'_> {
+    fn filter(&self) -> Filter {
+        let (s, w) = (&self.sensitivity, &self.weight);
+        match self.errors {
+            None => Filter::Weights(w.clone()),
+            Some(Errors::Three(chain)) => Filter::Three(chain.filter(s, w)),
+            Some(Errors::Four(chain)) => Filter::Four(chain.filter(s, w)),
+        }
+    }
+}
+
+#[pymethods]
+impl MotionWhitening {
+    /// Creates the filters of a set of runs.
+    ///
+    /// # Arguments
+    /// * `chains`: errors of the motion of each run; `None` where they are not known.
+    /// * `sensitivity`: derivatives of the residual with respect to position, velocity and
+    ///   acceleration, (n, 3) for each run, times `ratio` in standard deviations of the noise.
+    /// * `weight`: weight of each sample, (n,) for each run; a sample of weight zero is excluded.
+    #[new]
+    fn new<'py>(
+        py: Python<'py>,
+        chains: Vec<Option<Py<MotionErrorChain>>>,
+        sensitivity: Vec<PyReadonlyArray2<'py, f64>>,
+        ratio: f64,
+        weight: Vec<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Self> {
+        let arrays = sensitivity.iter().zip(&weight);
+        let posed: Vec<Posed<'_>> = chains
+            .iter()
+            .zip(arrays)
+            .map(|(chain, (s, w))| {
+                let (s, w) = (s.as_array(), w.as_array());
+                let errors = chain.as_ref().map(|chain| &chain.get().0);
+                let instants = chain.as_ref().map_or(w.len(), |chain| chain.get().len());
+                if s.dim() != (w.len(), 3) || instants != w.len() {
+                    return Err(PyValueError::new_err(format!(
+                        "{instants} instants, sensitivity {:?} and {} weights",
+                        s.dim(),
+                        w.len()
+                    )));
+                }
+                let row = |r: ArrayView1<'_, f64>| Vector3::new(r[0], r[1], r[2]) * ratio;
+                Ok(Posed {
+                    errors,
+                    sensitivity: s.rows().into_iter().map(row).collect(),
+                    weight: w.to_vec(),
+                })
             })
+            .collect::<PyResult<_>>()?;
+        let size = |run: &Posed<'_>| run.weight.len();
+        let create = |run: &Posed<'_>| PyResult::Ok(run.filter());
+        let filters = py.detach(|| on_pool(|| longest_first(&posed, size, create)))?;
+        Ok(Self {
+            log_determinant: filters.iter().map(Filter::log_determinant).sum(),
+            lengths: posed.iter().map(size).collect(),
+            filters,
         })
-        .collect::<PyResult<_>>()?;
-    let size = |run: &Residuals<'_>| run.columns.len();
-    let whitened = py.detach(|| on_pool(|| longest_first(&runs, size, Residuals::whitened)))?;
-    Ok(whitened
-        .into_iter()
-        .map(|(columns, log_determinant)| (columns.into_pyarray(py), log_determinant))
-        .collect())
+    }
+
+    /// Returns the whitened columns, (n, m), of some of the runs; excluded samples are zero.
+    ///
+    /// # Errors
+    /// If a run or a shape differs from those of the filters.
+    fn whiten<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<PyReadonlyArray2<'py, f64>>,
+        runs: Vec<usize>,
+    ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+        let arrays: Vec<(&Filter, Array2<f64>)> = runs
+            .iter()
+            .zip(&columns)
+            .map(|(&run, c)| match self.lengths.get(run) {
+                Some(&length) if length == c.as_array().nrows() => {
+                    let standard = c.as_array().as_standard_layout().into_owned();
+                    Ok((&self.filters[run], standard))
+                }
+                length => Err(PyValueError::new_err(format!(
+                    "run {run} of {length:?} samples, columns {:?}",
+                    c.as_array().dim()
+                ))),
+            })
+            .collect::<PyResult<_>>()?;
+        let size = |(_, c): &(&Filter, Array2<f64>)| c.len();
+        let whitened = |(filter, c): &(&Filter, Array2<f64>)| {
+            let mut white = c.clone();
+            if let Some(values) = white.as_slice_mut() {
+                filter.whiten(c.ncols(), values);
+            }
+            PyResult::Ok(white)
+        };
+        let all = py.detach(|| on_pool(|| longest_first(&arrays, size, whitened)))?;
+        Ok(all.into_iter().map(|white| white.into_pyarray(py)).collect())
+    }
 }

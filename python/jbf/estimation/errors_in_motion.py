@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf._core import whiten_motion_errors
+from jbf._core import MotionWhitening
 from jbf.records.motion.estimated_motion import MotionErrors
 
 Array = npt.NDArray[np.float64]
@@ -62,60 +62,12 @@ class ErrorsInMotion:
             by_delay=None if self.by_delay is None else tuple(self.by_delay[i] for i in selection),
         )
 
-    def stacked(
-        self,
-        residuals: Sequence[Array],
-        jacobian: Sequence[Array],
-        weights: Sequence[Array],
-        selection: Sequence[int] | None = None,
-    ) -> tuple[Array, Array]:
-        """Whitened residuals of standard deviation `noise` and their Jacobian, of all runs.
-
-        Parameters
-        ----------
-        residuals, jacobian
-            Residuals (n,) and their derivatives (n, k), one array per run, in the unit of the
-            force.
-        weights
-            Weight of each sample, 0 to 1; samples without weight are excluded.
-        selection
-            Indices of the runs to use; None for all runs.
-
-        Returns
-        -------
-        tuple
-            Residuals (m,) and Jacobian (m, k) of the samples with a weight, all runs in one array.
-        """
-        runs = list(range(len(residuals)) if selection is None else selection)
-        columns = []
-        for i in runs:
-            parts = [residuals[i], jacobian[i]]
-            if self.by_delay is not None:
-                parts.append(self.by_delay[i])
-            columns.append(np.column_stack(parts))
-        used = [weights[i] for i in runs]
-        whitened = self._whitened(runs, columns, used)
-        white = [rows[w > 0.0] for (rows, _), w in zip(whitened, used, strict=True)]
-        stacked = np.concatenate(white)
-        if self.by_delay is not None:
-            delay = stacked[:, -1]
-            slopes = delay @ stacked[:, :-1] / max(float(delay @ delay), 1e-300)
-            stacked = stacked[:, :-1] - np.outer(delay, slopes)
-        return stacked[:, 0], stacked[:, 1:]
-
-    def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
-        """Whitened residuals of standard deviation `noise`, one array per run.
-
-        Values at samples without weight are zero.
-        """
-        whitened = self._whitened(range(len(residuals)), [r[:, None] for r in residuals], weights)
-        return [white[:, 0] * (w > 0.0) for (white, _), w in zip(whitened, weights, strict=True)]
-
-    def deviance(self, residuals: Sequence[Array], weights: Sequence[Array]) -> float:
-        """Minus twice the log likelihood of the residuals, up to an additive constant."""
-        whitened = self._whitened(range(len(residuals)), [r[:, None] for r in residuals], weights)
-        squares = sum(float(np.sum(white**2)) for white, _ in whitened)
-        return squares / self.noise**2 + sum(determinant for _, determinant in whitened)
+    def whitening(self, weights: Sequence[Array]) -> Whitening:
+        """Return the filter for samples with these weights, 0 to 1, one (n,) array a run."""
+        chains = [None if errors is None else errors.chain for errors in self.errors]
+        ratio = self.scale / self.noise
+        core = MotionWhitening(chains, self.sensitivity, ratio, weights)
+        return Whitening(core, tuple(weights), self.noise, self.by_delay)
 
     def variance_ratio(self, run: int) -> Array:
         """Ratio of the variance due to the motion's errors to that of the noise, shape (n,)."""
@@ -132,25 +84,79 @@ class ErrorsInMotion:
         ratio = np.concatenate(ratios)
         return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0
 
-    def _whitened(
-        self, runs: Sequence[int], columns: Sequence[Array], weights: Sequence[Array]
-    ) -> list[tuple[Array, float]]:
-        """Whitened columns of each run, and the log determinants of the covariances."""
-        with np.errstate(divide="ignore"):
-            variances = [np.where(w > 0.0, (self.noise / w) ** 2, np.inf) for w in weights]
-        chains = [None if (errors := self.errors[i]) is None else errors.chain for i in runs]
-        known = [k for k, chain in enumerate(chains) if chain is not None]
-        whitened = whiten_motion_errors(
-            [chain for chain in chains if chain is not None],
-            [self.scale * self.sensitivity[runs[k]] for k in known],
-            [variances[k] for k in known],
-            [columns[k] for k in known],
+
+@dataclass(frozen=True, eq=False)
+class Whitening:
+    """Filter that whitens residuals with errors of the motion, for given weights of the samples.
+
+    Attributes
+    ----------
+    core
+        Filters of the runs, for noise of unit standard deviation.
+    weights
+        Weight of each sample, 0 to 1, one array per run; samples without weight are excluded.
+    noise, by_delay
+        As in `ErrorsInMotion`.
+    """
+
+    core: MotionWhitening
+    weights: tuple[Array, ...]
+    noise: float
+    by_delay: tuple[Array, ...] | None
+
+    def stacked(
+        self,
+        residuals: Sequence[Array],
+        jacobian: Sequence[Array],
+        selection: Sequence[int] | None = None,
+    ) -> tuple[Array, Array]:
+        """Whitened residuals of standard deviation `noise` and their Jacobian, of all runs.
+
+        Parameters
+        ----------
+        residuals, jacobian
+            Residuals (n,) and their derivatives (n, k), one array per run, in the unit of the
+            force.
+        selection
+            Indices of the runs to use; None for all runs.
+
+        Returns
+        -------
+        tuple
+            Residuals (m,) and Jacobian (m, k) of the samples with a weight, all runs in one array.
+        """
+        runs = list(range(len(residuals)) if selection is None else selection)
+        columns = []
+        for i in runs:
+            parts = [residuals[i], jacobian[i]]
+            if self.by_delay is not None:
+                parts.append(self.by_delay[i])
+            columns.append(np.column_stack(parts))
+        whitened = self.core.whiten(columns, runs)
+        stacked = np.concatenate(
+            [white[self.weights[i] > 0.0] for i, white in zip(runs, whitened, strict=True)]
         )
-        results = {
-            k: (self.noise * white, log_determinant)
-            for k, (white, log_determinant) in zip(known, whitened, strict=True)
-        }
-        return [
-            results[k] if k in results else (c * w[:, None], float(np.sum(np.log(v[w > 0.0]))))
-            for k, (c, w, v) in enumerate(zip(columns, weights, variances, strict=True))
-        ]
+        if self.by_delay is not None:
+            delay = stacked[:, -1]
+            slopes = delay @ stacked[:, :-1] / max(float(delay @ delay), 1e-300)
+            stacked = stacked[:, :-1] - np.outer(delay, slopes)
+        return stacked[:, 0], stacked[:, 1:]
+
+    def innovations(self, residuals: Sequence[Array]) -> list[Array]:
+        """Whitened residuals of standard deviation `noise`, one array per run.
+
+        Values at samples without weight are zero.
+        """
+        runs = range(len(residuals))
+        return [white[:, 0] for white in self.core.whiten([r[:, None] for r in residuals], runs)]
+
+    def deviance(self, residuals: Sequence[Array]) -> float:
+        """Minus twice the log likelihood of the residuals, up to an additive constant."""
+        squares = sum(float(r @ r) for r in self.innovations(residuals))
+        return squares / self.noise**2 + self.log_determinant
+
+    @property
+    def log_determinant(self) -> float:
+        """Logarithm of the determinant of the covariance of the residuals."""
+        count = sum(int(np.count_nonzero(w)) for w in self.weights)
+        return self.core.log_determinant + 2.0 * count * float(np.log(self.noise))

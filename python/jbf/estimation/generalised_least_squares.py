@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy import optimize
 
 from jbf.estimation.delays import common_delay_step, delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
@@ -42,8 +43,14 @@ It is a numerical tolerance.
 """
 EVALUATIONS = 20
 """Evaluations of each fit. It limits the effort only."""
-SIMPLEX = 0.3
-"""Size of the first simplex in the logarithms of noise and error scale. It only starts a search."""
+RATIOS = 9
+"""Number of ratios of error scale and noise from which a search starts. It bounds a search only."""
+RATIO_STEP = 0.01
+"""Tolerance of the logarithm of the ratio of error scale and noise. It is a numerical tolerance."""
+MOST_SCALE = 3.0
+"""Largest logarithm of the error scale, and minus the smallest. It bounds a search only."""
+MOST_NOISE = 0.5
+"""Logarithm of the largest noise, relative to the residual. It bounds a search only."""
 EXACT_RECORD = 1e-12
 """Smallest residual relative to the largest force. It is a numerical tolerance."""
 LEAST_NOISE = -7.0
@@ -168,7 +175,7 @@ class _End:
         solution = self.solution
         samples = self.first.samples_at(solution.values)
         motion = estimate_motion_errors(self.problem, solution)
-        deviance = motion.deviance(solution.residuals, solution.samples.weight)
+        deviance = motion.whitening(solution.samples.weight).deviance(solution.residuals)
         counts = [sum(map(np.count_nonzero, s.weight)) for s in (samples, solution.samples)]
         return deviance * counts[0] / max(counts[1], 1)
 
@@ -290,39 +297,49 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
     motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
     largest = max(float(np.max(np.abs(f), initial=0.0)) for f in predicted)
     most = max(solution.samples.rms(solution.residuals), EXACT_RECORD * largest, 1e-150)
-
-    smallest = problem.campaign.settings.motion.min_noise_share * solution.samples.rms(predicted)
+    settings = problem.campaign.settings.motion
+    smallest = settings.min_noise_share * solution.samples.rms(predicted)
     lowest = float(np.clip(np.log(max(smallest, 1e-150) / most), LEAST_NOISE, 0.0))
+    count = sum(int(np.count_nonzero(w)) for w in weights)
 
-    def at(x: Array) -> ErrorsInMotion:
-        """Errors of the motion with the logarithms `x` of noise and scale."""
-        return replace(motion, noise=most * float(np.exp(x[0])), scale=float(np.exp(x[1])))
+    def at(ratio: float, noise: float) -> ErrorsInMotion:
+        """Errors of the motion with the logarithms of scale / noise and of noise / RMS."""
+        scale = float(np.exp(ratio + noise))
+        return replace(motion, noise=most * float(np.exp(noise)), scale=scale)
 
-    def deviance(x: Array) -> float:
-        """Penalised deviance at the logarithms `x` of noise and scale."""
-        return _penalised(problem, at(x), solution.residuals, weights)
+    def profiled(ratio: float) -> tuple[float, float]:
+        """Smallest penalised deviance for a given logarithm of scale / noise, and its noise.
 
-    from scipy.optimize import minimize  # import time of half a second
+        The filter depends on the ratio only, and the deviance is convex in the logarithm of the
+        noise.
+        """
+        unit = at(ratio, 0.0).whitening(weights)
+        squares = unit.deviance(solution.residuals) - unit.log_determinant
+
+        def penalised(noise: float) -> float:
+            """Penalised deviance at the logarithm of noise / RMS."""
+            deviance = squares * float(np.exp(-2.0 * noise)) + 2.0 * count * noise
+            return deviance + unit.log_determinant + _prior(problem, ratio + noise)
+
+        bounds = max(lowest, -MOST_SCALE - ratio), min(MOST_NOISE, MOST_SCALE - ratio)
+        found = optimize.minimize_scalar(penalised, bounds=bounds, method="bounded")
+        return float(found.fun), float(found.x)
 
     # A second minimum exists at low noise, where the motion's errors explain the whole residual.
-    starts = [
-        np.array([max(noise, lowest), scale])
-        for noise in (-1.0, -3.0, LEAST_NOISE + 1.0)
-        for scale in (-0.5, 0.0, 0.7)
-    ]
-    start = min(starts, key=deviance)
-    optimum = minimize(
-        deviance,
-        start,
-        method="Nelder-Mead",
-        bounds=[(lowest, 0.5), (-3.0, 3.0)],
-        options={
-            "xatol": 0.02,
-            "fatol": 0.1,
-            "initial_simplex": start + SIMPLEX * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
-        },
+    ratios = np.linspace(-MOST_SCALE - MOST_NOISE, MOST_SCALE - lowest, RATIOS + 2)
+    least = 1 + int(np.argmin([profiled(ratio)[0] for ratio in ratios[1:-1]]))
+    found = optimize.minimize_scalar(
+        lambda ratio: profiled(ratio)[0],
+        bounds=(ratios[least - 1], ratios[least + 1]),
+        method="bounded",
+        options={"xatol": RATIO_STEP},
     )
-    return at(optimum.x)
+    return at(float(found.x), profiled(float(found.x))[1])
+
+
+def _prior(problem: Problem, scale: float) -> float:
+    """Minus twice the log prior density of the logarithm of the scale of the motion's errors."""
+    return (scale / problem.campaign.settings.motion.scale_prior) ** 2
 
 
 def _penalised(
@@ -332,8 +349,8 @@ def _penalised(
     weights: Sequence[Array],
 ) -> float:
     """Minus twice the log likelihood, plus the prior of the scale of the motion's errors."""
-    prior = (float(np.log(motion.scale)) / problem.campaign.settings.motion.scale_prior) ** 2
-    return motion.deviance(residuals, weights) + prior
+    deviance = motion.whitening(weights).deviance(residuals)
+    return deviance + _prior(problem, float(np.log(motion.scale)))
 
 
 def _fitted(

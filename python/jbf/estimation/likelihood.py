@@ -6,7 +6,7 @@ step is made.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -57,9 +57,8 @@ def _log_determinant(solution: Solution, count: int) -> float:
     """Log determinant of the covariance of the noise, in units of its estimated variance."""
     samples = solution.samples
     if samples.motion is not None:
-        zeros = [np.zeros(len(w)) for w in samples.weight]
-        deviance = samples.motion.deviance(zeros, samples.weight)
-        return deviance - 2.0 * count * float(np.log(samples.motion.noise))
+        log_determinant = samples.motion.whitening(samples.weight).log_determinant
+        return log_determinant - 2.0 * count * float(np.log(samples.motion.noise))
     weights = -2.0 * sum(float(np.sum(np.log(w[w > 0.0]))) for w in samples.weight)
     if samples.between is None:
         return weights
@@ -79,21 +78,34 @@ def effective_share(solution: Solution) -> float:
     return _shares[solution]
 
 
-def share_of_gain(richer: Solution, simpler: Solution) -> float:
+def share_of_gain(
+    richer: Solution,
+    simpler: Solution,
+    share_of: Callable[[Sequence[Array]], float | None] = lambda differences: None,
+) -> float:
     """Factor, at most one, that corrects a log-likelihood gain for correlated innovations.
 
-    The factor is the smaller of two estimates. One is computed from all autocorrelations, the other
-    from the long-run variance of the score in the direction in which the two solutions differ.
+    The factor is the smaller of two estimates. One is computed from all autocorrelations of the
+    innovations of the richer solution, the other from the long-run variance of the score in the
+    direction in which the two solutions differ.
+
+    Parameters
+    ----------
+    share_of
+        The same factor for another estimate of the noise, from the differences of the innovations;
+        the larger one is returned.
     """
     samples = common_samples(richer.samples, simpler.samples)
     pairs = _innovation_pairs(richer, simpler, samples)
+    differences = [e_simpler - e_richer for e_richer, e_simpler in pairs]
     inflation = significant_inflation(
-        [e_simpler - e_richer for e_richer, e_simpler in pairs],
+        differences,
         [e_richer for e_richer, _ in pairs],
         samples.steps_s,
         samples.settings.variance,
     )
-    return min(effective_share(richer), 1.0 / inflation)
+    own = min(effective_share(richer), 1.0 / inflation)
+    return max(own, share_of(differences) or 0.0)
 
 
 def robust_gain(richer: Solution, simpler: Solution) -> float:

@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.errors_in_motion import ErrorsInMotion, Whitening
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.random_effects import RandomEffects
@@ -152,11 +153,17 @@ class Samples:
     def square(self, residuals: Sequence[Array]) -> float:
         """Sum of squares of weighted residuals, N^2; whitened if the motion has errors."""
         if self.motion is not None:
-            residuals = self.motion.innovations(residuals, self.weight)
+            residuals = self._whitening.innovations(residuals)
             return sum(float(np.sum(r**2)) for r in residuals)
         return sum(float(np.sum((r * w) ** 2)) for r, w in zip(residuals, self.weight, strict=True))
 
     # ---- likelihood -------------------------------------------------------------------------
+
+    @cached_property
+    def _whitening(self) -> Whitening:
+        """Filter of residuals with errors of the motion, which must be known."""
+        assert self.motion is not None
+        return self.motion.whitening(self.weight)
 
     def stacked(
         self,
@@ -171,7 +178,7 @@ class Samples:
         to the noise filter there.
         """
         if self.motion is not None:
-            return self.motion.stacked(residuals, jacobian, self.weight, selection)
+            return self._whitening.stacked(residuals, jacobian, selection)
         r, j = [], []
         for i in range(len(residuals)) if selection is None else selection:
             w, step = self.weight[i], self.steps_s[i]
@@ -232,7 +239,9 @@ class Samples:
         """Innovations of weighted residuals, one array per run; zero outside the masks."""
         residuals = self.without_deviations(residuals, noise)
         if self.motion is not None:
-            return self.motion.innovations(residuals, weights)
+            same = weights is self.weight
+            whitening = self._whitening if same else self.motion.whitening(weights)
+            return whitening.innovations(residuals)
         return [
             noise.innovations(r * w, step) * m
             for r, w, m, step in zip(residuals, weights, masks, self.steps_s, strict=True)

@@ -88,7 +88,7 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
     residual = drawn_residual(errors, sensitivity, 1.0, np.random.default_rng(1))
     model = ErrorsInMotion((errors,), (sensitivity,), NOISE)
     weight = np.where(np.arange(n) % 7 == 0, 0.0, 1.0)
-    white, _ = model.stacked([residual], [np.ones((n, 1))], [weight])
+    white, _ = model.whitening([weight]).stacked([residual], [np.ones((n, 1))])
     assert len(white) == np.count_nonzero(weight)
     assert np.std(white) == pytest.approx(NOISE, rel=0.05)
     assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.06
@@ -107,9 +107,9 @@ def test_likelihood_is_maximal_at_the_simulated_scale_of_the_motion_errors(
     sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
     residual = drawn_residual(errors, sensitivity, scale, np.random.default_rng(2))
     deviances = [
-        ErrorsInMotion((errors,), (sensitivity,), NOISE, scale * share).deviance(
-            [residual], [np.ones(n)]
-        )
+        ErrorsInMotion((errors,), (sensitivity,), NOISE, scale * share)
+        .whitening([np.ones(n)])
+        .deviance([residual])
         for share in (0.5, 0.8, 1.0, 1.25, 2.0)
     ]
     assert abs(int(np.argmin(deviances)) - 2) <= 1

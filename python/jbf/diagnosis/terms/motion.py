@@ -44,8 +44,8 @@ def errors_of_motion(model: Model) -> Proposal | None:
     if before is not None and ratio < model.policy.motion.min_noise_ratio:
         return None
     of_before, of_after = _common_weights((campaign, solution), (again.campaign, after))
-    gain = old.deviance(solution.residuals, of_before)
-    gain -= new.deviance(after.residuals, of_after)
+    gain = old.whitening(of_before).deviance(solution.residuals)
+    gain -= new.whitening(of_after).deviance(after.residuals)
     held_out = _held_out_deviance(model.problem, solution, old, of_before)
     held_out -= _held_out_deviance(again, after, new, of_after)
     # A problem with a shifted force has samples of its own.
@@ -59,7 +59,7 @@ def _held_out_deviance(
     """Minus twice the log predictive density of held-out runs, with given errors of the motion."""
     samples = replace(solution.samples, weight=tuple(weights), motion=motion)
     parts = held_out_parts(problem, solution)
-    log_determinant = motion.deviance([np.zeros(len(w)) for w in weights], weights)
+    log_determinant = motion.whitening(weights).log_determinant
     variance = motion.noise**2
     return predictive_deviance(solution, parts, samples, WHITE, variance) + log_determinant
 

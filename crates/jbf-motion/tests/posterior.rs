@@ -199,8 +199,9 @@ fn whitened_columns_have_the_scalar_products_of_the_dense_covariance() {
             &rows * covariance * rows.transpose() + DMatrix::identity(SAMPLES, SAMPLES) * 1e-3;
         let part = full.select_rows(&kept).select_columns(&kept);
         const WIDTH: usize = 15;
-        let columns =
-            DMatrix::from_fn(SAMPLES, WIDTH, |k, j| (1.3 * k as f64 + 2.0 * j as f64).sin());
+        let columns = DMatrix::from_fn(SAMPLES, WIDTH, |k, j| {
+            (1.3 * k as f64 + 2.0 * j as f64).sin()
+        });
         let mut flat: Vec<f64> = columns.transpose().iter().copied().collect();
         let chain = ErrorChain::new(&found.covariance, &found.gain);
         let filter = chain.filter(&sensitivity, &weight);

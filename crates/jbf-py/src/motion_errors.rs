@@ -209,6 +209,9 @@ impl MotionWhitening {
             PyResult::Ok(white)
         };
         let all = py.detach(|| on_pool(|| longest_first(&arrays, size, whitened)))?;
-        Ok(all.into_iter().map(|white| white.into_pyarray(py)).collect())
+        Ok(all
+            .into_iter()
+            .map(|white| white.into_pyarray(py))
+            .collect())
     }
 }

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.confirmation import Confirmation
+from jbf.diagnosis.directions import RichestResidual
 from jbf.diagnosis.fit_state import Fitted, Reached
 from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
@@ -26,7 +27,6 @@ from jbf.estimation.held_out import (
     indispensable_runs,
 )
 from jbf.estimation.held_out_comparison import ExtrapolatedRun, extrapolated_runs
-from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.initial_state import has_unknown_start
 from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.likelihood import effective_share, likelihood_gain
@@ -75,14 +75,21 @@ class Candidates:
         self.reached: Reached = Reached() if before is None else before.reached
         self._fitted: dict[frozenset[str], Fitted] = {}
         self._level: Level | None = None
-        self._levels: dict[frozenset[str], Level] = {}
+        self._levels: dict[frozenset[str], tuple[Level, RichestResidual | None]] = {}
+        self.residual: RichestResidual | None = None
+        """Residual of the last calibrated model without all that candidates can explain."""
 
-    def of(self, campaign: Campaign) -> Candidates:
-        """Return the candidates of a changed campaign; the fits start from present solutions."""
+    def of(self, campaign: Campaign, motion_of: Iterable[str] | None = None) -> Candidates:
+        """Return the candidates of a changed campaign; the fits start from present solutions.
+
+        `motion_of` has the effects with which new errors of the motion were estimated.
+        """
         self.before = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
         # Valid until the level is calibrated for a model of the new campaign.
         again._level = self._level
+        if motion_of is not None:
+            again.fitted(motion_of).motion_known = True
         return again
 
     # ---- which effects ----------------------------------------------------------------------
@@ -114,16 +121,6 @@ class Candidates:
         if fitted is None or fitted.state in ("posed", "looked"):
             return None
         return fitted.named_values()
-
-    def fitted_extensions(self, effects: Iterable[str]) -> dict[str, Fitted]:
-        """Fits of sets with exactly one more effect than these, by the name of that effect."""
-        present = frozenset(effects)
-        extensions = {}
-        for key, fitted in self._fitted.items():
-            if len(key) == len(present) + 1 and present < key and fitted.solution is not None:
-                (name,) = key - present
-                extensions[name] = fitted
-        return extensions
 
     # ---- state of the fits ------------------------------------------------------------------
 
@@ -173,6 +170,11 @@ class Candidates:
         return fitted.score
 
     # ---- the level of the tests -------------------------------------------------------------
+    def independent_share(self, solution: Solution) -> float:
+        """Effective number of independent samples of a solution divided by their number."""
+        share = effective_share(solution)
+        return share if self.residual is None else max(share, self.residual.share)
+
     @property
     def level(self) -> Level:
         """Acceptance threshold for the gain of an effect; before calibration that of the law."""
@@ -186,17 +188,23 @@ class Candidates:
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
-            level = calibrated(self._level_given(present), directions)
-            self._levels[key] = with_decoys(level, directions, self.campaign.samples.count)
+            thinned = self.fitted(present).problem.thinned
+            self.residual = residual = RichestResidual.of(directions, thinned.campaign.samples)
+            level = self._level_given(present)
+            if residual is not None:
+                directions = [residual.counted(d) for d in directions]
+            level = calibrated(level, directions, residual)
+            level = with_decoys(level, directions, self.campaign.samples.count)
+            self._levels[key] = (level, residual)
             # These arrays are as large as the records and are not needed again.
             for fitted in self._fitted.values():
                 fitted.directions = None
-        self._level = self._levels[key]
+        self._level, self.residual = self._levels[key]
 
     def _level_given(self, present: Sequence[str]) -> Level:
         """Acceptance threshold in white noise, for the residual of the model with these effects."""
         base = self.converge(present)
-        samples = effective_share(base) * base.samples.count
+        samples = self.independent_share(base) * base.samples.count
         least = self.policy.least_effect_share(self.campaign.motion_share)
         return Level.shared(self.policy, len(self.names), samples, base.rms, least)
 
@@ -312,11 +320,6 @@ class Candidates:
         if likelihood_gain(refit, near) > 0.0 and not too_large:
             fitted.improve(refit)
         return fitted.current_solution()
-
-    def idle(self, solution: Solution) -> tuple[str, ...]:
-        """Effects without influence in a solution: all their parameters have their null values."""
-        problem = self.fitted(solution.effects).problem
-        return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
     def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
         """Compare the held-out errors of a model with and without one added effect.

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy import fft, special
 
 if TYPE_CHECKING:
-    from jbf.diagnosis.level import Directions
+    from jbf.diagnosis.directions import Directions
 
 Array = npt.NDArray[np.float64]
 

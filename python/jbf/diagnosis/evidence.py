@@ -6,17 +6,19 @@ All values are in twice the log likelihood.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
+from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.likelihood import (
-    effective_share,
     likelihood_gain,
     next_step_gain,
     noise_at,
     robust_gain,
     share_of_gain,
 )
+from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import common_samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
@@ -32,7 +34,8 @@ def evidence(
 ) -> float:
     """Log-likelihood gain of a richer model over a simpler one, less the acceptance threshold.
 
-    The effective number of samples is smaller where the residual of the richer model is correlated.
+    The effective number of samples is smaller where both the residual of the richer model and that
+    of the richest one (`RichestResidual`) are correlated.
     An effect with its parameters at the null has no positive evidence: its gain is due to the
     search.
 
@@ -46,8 +49,11 @@ def evidence(
     if gain > 0.0 and _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
         gain = 0.0
     if gain > 0.0:
-        gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
-    if set(candidates.idle(richer)) - set(simpler.effects):
+        residual = candidates.residual
+        share_of = (lambda differences: None) if residual is None else residual.share_of
+        whole = candidates.independent_share(richer)
+        gain *= whole if anywhere else share_of_gain(richer, simpler, share_of)
+    if _adds_idle_effect(candidates, richer, simpler):
         gain = min(gain, 0.0)
     price = price_of(candidates, richer.free - simpler.free)
     if gain > price:
@@ -62,16 +68,27 @@ def evidence(
 def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
     """Gain of the richer model less the threshold, if all samples are treated as independent.
 
-    It is in twice the log likelihood and is used for a model that independent units confirm.
+    It is in twice the log likelihood of white noise, and is used for a model that independent units
+    confirm. Coloured noise contains the slow part of an effect that another model lacks.
     """
-    if set(candidates.idle(richer)) - set(simpler.effects):
+    if _adds_idle_effect(candidates, richer, simpler):
         return 0.0
     if _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
         return 0.0
     if _describes_motion_errors(candidates, richer, simpler):
         return 0.0
-    gain = min(likelihood_gain(richer, simpler), robust_gain(richer, simpler))
+    richer, simpler = replace(richer, noise=WHITE), replace(simpler, noise=WHITE)
+    samples = common_samples(richer.samples, simpler.samples)
+    before, after = (samples.cost(s.residuals, WHITE) for s in (simpler, richer))
+    gain = min(before - after, robust_gain(richer, simpler))
     return gain - price_of(candidates, richer.free - simpler.free)
+
+
+def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
+    """Whether an added effect has no influence: all its parameters have their null values."""
+    problem = candidates.fitted(richer.effects).problem
+    idle = idle_effects(problem.effects, problem.parameters, richer.values.tolist())
+    return bool(set(idle) - set(simpler.effects))
 
 
 def _describes_motion_errors(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
@@ -130,7 +147,7 @@ def swap_costs(
         Solutions of the current model and of that with the effects `rest`.
     """
     # Fewer samples are independent where the residual of `current` is correlated.
-    share = effective_share(current)
+    share = candidates.independent_share(current)
     sets = {name: (*rest, name) for name in others}
 
     def cost(solution: Solution) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
-from jbf.diagnosis.level import Directions
+from jbf.diagnosis.directions import Directions
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
 from jbf.estimation.held_out import HeldOutPart
@@ -20,6 +20,7 @@ from jbf.records.run import Run
 
 if TYPE_CHECKING:
     from jbf.diagnosis.candidates import Candidates
+    from jbf.diagnosis.terms.proposal import Proposal
 
 Array = npt.NDArray[np.float64]
 State = Literal["posed", "looked", "ranked", "converged"]
@@ -51,6 +52,9 @@ class Fitted:
         Held-out predictions of the runs; empty until they are required.
     halves
         Held-out predictions of two halves of a run, by (run, alternate).
+    motion, motion_known
+        Errors of the motion re-estimated with these effects, None if they do not change; and
+        whether they have been estimated.
     """
 
     problem: Problem
@@ -65,6 +69,8 @@ class Fitted:
     peaks_searched: bool = False
     held_out: list[HeldOutPart] = field(default_factory=list)
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
+    motion: Proposal | None = None
+    motion_known: bool = False
 
     def current_solution(self) -> Solution:
         """Return the present solution of the fit, converged or not."""

@@ -18,7 +18,6 @@ is rejected.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -30,13 +29,12 @@ import numpy.typing as npt
 from scipy import special
 
 from jbf.diagnosis.decoys import decoy_gains
+from jbf.diagnosis.directions import Directions, RichestResidual, largest_common_group
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.least_squares import least_squares, triangular
 from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
 from jbf.estimation.problem import Problem
-from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.estimation.variance import Places, blocks_of, significant_inflation
 
 Array = npt.NDArray[np.float64]
 
@@ -151,92 +149,6 @@ def _gain_from_noise(chance: float) -> float:
     return float(special.chdtri(1, chance))
 
 
-@dataclass(frozen=True, eq=False)
-class Directions:
-    """Part of the Jacobian of an effect that the rest of the model cannot reproduce.
-
-    The rows are those of the whitened likelihood (innovations), the columns the score directions of
-    the parameters of the effect.
-
-    Attributes
-    ----------
-    ways
-        Orthonormal basis of this part, orthogonal to the Jacobian of the model without the effect,
-        shape (n, k).
-    innovations
-        Innovations of the model without the effect, scaled to unit variance, shape (n,).
-    counted
-        Factors on the squared scores, below one in autocorrelated noise, shape (k,).
-    blocks
-        First row of each block of the wild bootstrap.
-    ends
-        First row of each run but the first.
-    """
-
-    ways: Array
-    innovations: Array
-    counted: Array
-    blocks: Places
-    ends: Places
-
-    @classmethod
-    def of(
-        cls, innovations: Array, effect: Array, law: Array, samples: Samples, share: float
-    ) -> Directions:
-        """Compute the score directions of an effect from the whitened rows of a likelihood.
-
-        Parameters
-        ----------
-        innovations
-            Innovations of the model without the effect, shape (n,).
-        effect, law
-            Derivatives with respect to the parameters of the effect, shape (n, k), and to those of
-            the model without it.
-        samples
-            Samples to which the rows belong.
-        share
-            Ratio of the effective number of samples to the number of samples.
-        """
-        size = np.linalg.norm(law, axis=0)
-        law = law[:, size > 0.0] / size[size > 0.0]
-        step, *_ = np.linalg.lstsq(law, effect, rcond=1e-10)
-        unexplained = effect - law @ step
-        length = np.linalg.norm(unexplained, axis=0)
-        independent = length > 1e-8 * np.maximum(np.linalg.norm(effect, axis=0), 1e-300)
-        ways = np.linalg.qr(unexplained[:, independent] / length[independent])[0]
-        ends = _ends(samples)
-        unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
-        parts, settings = np.split(unit, ends), samples.settings.variance
-        inflations = [
-            significant_inflation(np.split(way, ends), parts, samples.steps_s, settings)
-            for way in ways.T
-        ]
-        counted = np.array([min(share, 1.0 / m) for m in inflations])
-        return cls(ways, unit, counted, blocks_of(samples, share), ends)
-
-    def by_block(self, innovations: Array, blocks: Places) -> Array:
-        """Sums of the scores of given innovations over each block, shape (blocks, k).
-
-        The innovations are the residual without the part that candidates could explain. Scores have
-        unit variance in noise with the assumed autocorrelation.
-
-        Parameters
-        ----------
-        innovations
-            Innovations, shape (n,).
-        blocks
-            First row of each block.
-        """
-        scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
-        return scores * np.sqrt(self.counted)
-
-
-def _ends(samples: Samples) -> Places:
-    """First row of each run but the first, among the samples with nonzero weight."""
-    counts = [int(np.count_nonzero(w > 0.0)) for w in samples.weight]
-    return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
-
-
 _stacked_rows: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()
 
 
@@ -302,39 +214,24 @@ def score_test(
     return gain, directions, stepped
 
 
-def _explained(ways: Array, target: Array) -> Array:
-    """Projection of `target` on the span of unit columns `ways`, which may be collinear."""
-    size, axes = np.linalg.eigh(ways.T @ ways)
-    resolved = size > 1e-12 * size[-1]
-    step = axes[:, resolved] @ ((axes[:, resolved].T @ (ways.T @ target)) / size[resolved])
-    explained: Array = ways @ step
-    return explained
-
-
-def _largest_common_group(directions: list[Directions]) -> list[Directions]:
-    """Largest group of candidates whose score directions refer to the same number of samples.
-
-    A candidate that excludes samples cannot be tested on the residual of the others.
-    """
-    counts = Counter(len(d.ways) for d in directions)
-    usual = max(counts, key=lambda count: (counts[count], count), default=0)
-    return [d for d in directions if len(d.ways) == usual]
-
-
-def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
+def calibrated(
+    level: Level, directions: Sequence[Directions], residual: RichestResidual | None
+) -> Level:
     """Reduce the significance level until sign-reversed residuals attain the false-alarm rate.
 
-    The part of the residual that candidates could explain is removed first, because it is under
-    test. Some candidates have no score direction, for example an effect that shifts friction jumps
-    in time, whose derivative at the null is zero. For these, and for candidates with other samples,
+    Some candidates have no score direction, for example an effect that shifts friction jumps in
+    time, whose derivative at the null is zero. For these, and for candidates with other samples,
     the Bonferroni correction is used.
+
+    Parameters
+    ----------
+    residual
+        Residual without the part that candidates could explain, which is under test.
     """
-    tested = _largest_common_group([d for d in directions if d.ways.size])
-    if not tested:
+    tested = largest_common_group([d for d in directions if d.ways.size])
+    if not tested or residual is None:
         return level
-    every = np.column_stack([d.ways for d in tested])
-    noise = tested[0].innovations - _explained(every, tested[0].innovations)
-    noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
+    noise = np.concatenate(residual.innovations)
     # The models may have residuals of different autocorrelation: use the fewest blocks.
     blocks = min((d.blocks for d in tested), key=len)
     random = np.random.default_rng(len(blocks))

@@ -275,9 +275,10 @@ def _with_law(
     campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
-    with_motion_errors = with_errors_of_motion(candidates, start_model(candidates))
+    base = start_model(candidates)
+    with_motion_errors = with_errors_of_motion(candidates, base)
     if with_motion_errors is not None:
-        candidates = candidates.of(with_motion_errors)
+        candidates = candidates.of(with_motion_errors, base)
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, refused = selected.present, selected.steps, selected.refused

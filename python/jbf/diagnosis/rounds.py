@@ -147,16 +147,17 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             update = best_term_update(candidates, present, least) if may_update else None
             if update is None and len(present) < policy.selection.max_effects:
                 # The errors of the motion, estimated without the effect, contain its force.
-                again = re_estimated_motion(candidates, (*present, trial_round.leader))
+                richer = (*present, trial_round.leader)
+                again = re_estimated_motion(candidates, richer)
                 if again is not None:
-                    candidates, visited = candidates.of(again), {frozenset(present)}
+                    candidates, visited = candidates.of(again, richer), {frozenset(present)}
                 grown = _grown(candidates, present, trial_round)
         ended = frozenset(grown) in visited
         if update is None and ended and follow == "promising" and may_update:
             update = best_term_update(candidates, present)
         if update is not None:
             updates += 1
-            candidates = candidates.of(update.campaign)
+            candidates = candidates.of(update.campaign, update.motion_of)
             kept = tuple(n for n in present if n in update.effects)
             present = reconsider(candidates, still_needed(candidates, kept))
             visited, follow = {frozenset(present)}, "promising"
@@ -312,7 +313,13 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     Samples next to friction jumps are excluded, since a run-specific clock error of less than a
     sample can affect them.
     """
-    policy, fitted = candidates.policy, candidates.fitted_extensions(present)
+    extensions = {
+        name: candidates.fitted((*present, name))
+        for name in candidates.names
+        if name not in present
+    }
+    policy = candidates.policy
+    fitted = {name: f for name, f in extensions.items() if f.solution is not None}
     base = candidates.converge(present)
     # Exclude the samples next to jumps, as in the fit of a delay.
     delay = fitted.get(DELAY)

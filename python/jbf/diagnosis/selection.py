@@ -16,7 +16,7 @@ import numpy as np
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
-from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
+from jbf.diagnosis.drive import TERMS, is_inertial, machine_of
 from jbf.diagnosis.evidence import (
     evidence,
     evidence_on_common_samples,
@@ -26,7 +26,7 @@ from jbf.diagnosis.evidence import (
 )
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
+from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_added, can_be_removed
 
@@ -191,7 +191,7 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 
     If another effect is missing, the residual may be so correlated that no effect has evidence. An
     effect is needed even then if independent units confirm it, or if the held-out error is larger
-    without it.
+    without it. The inertia and the weight of a drive exist and need a gain only.
     """
     full = candidates.converge(current)
     if evidence(candidates, full, simpler) >= 0.0:
@@ -199,7 +199,7 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
     if full_gain(candidates, full, simpler) <= 0.0:
         return False
     rest = tuple(e for e in current if e != name)
-    if units_confirm(candidates, rest, name):
+    if is_inertial(candidates.campaign.rig, name) or units_confirm(candidates, rest, name):
         return True
     least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
     return candidates.held_out_rms(rest) > least
@@ -229,10 +229,10 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     """
     policy = candidates.policy
     rivals = [n for n in candidates.names if n not in present and can_be_added(n, present)]
-    share = effective_share(base)
     candidates.score_all([(*present, name) for name in rivals], base)
     scores = {name: candidates.score_test((*present, name), base) for name in rivals}
     candidates.calibrate(present)
+    share = candidates.independent_share(base)
     least = policy.search.min_score_share * price_of(candidates, 1)
     # In a correlated residual a sample is less informative, and any candidate has a small gain.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
@@ -362,7 +362,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         if not needed(candidates, current, name, simpler):
             current = rest
             continue
-        if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
+        if is_inertial(candidates.campaign.rig, name):
             continue  # inertia and weight do not imitate an effect; an offset may
         others = [
             other

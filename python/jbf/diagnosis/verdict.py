@@ -22,7 +22,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.residual_structure.constancy import disagreement
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.starting_values import scales
 from jbf.models.catalogue import Parameter, find_effect
 from jbf.models.parameter_value import ParameterValue
@@ -83,7 +83,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
         Residual structure of the model with the present effects.
     """
     full, problem = candidates.converge(present), candidates.fitted(present).problem
-    share, policy = effective_share(full), candidates.policy
+    share, policy = candidates.independent_share(full), candidates.policy
     largest = max((r.share for r in remains), default=0.0)
     doubted = []
     machine = machine_of(candidates.campaign.rig, present)

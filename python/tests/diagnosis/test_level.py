@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from by_hand import Array
 from jbf import Diagnosis, InputError, Rig, diagnose
+from jbf.diagnosis import level as levels
 from jbf.diagnosis.decoys import DRAWS, decoy_gains, rate_below
-from jbf.diagnosis.level import Directions, Level, calibrated, with_decoys
+from jbf.diagnosis.directions import Directions, RichestResidual
+from jbf.diagnosis.level import Level, with_decoys
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.policy_sections import Selection
 from jbf.estimation.likelihood import independent_share
@@ -79,6 +81,11 @@ def _directions(noise: Array, shapes: list[Array] | None = None) -> list[Directi
     share = independent_share(np.split(noise, RUNS), SAMPLES.steps_s)
     shapes = _shapes() if shapes is None else shapes
     return [Directions.of(noise, shape[:, None], LAW, SAMPLES, share) for shape in shapes]
+
+
+def calibrated(level: Level, directions: list[Directions]) -> Level:
+    """Calibrated level for the residual without the part that the directions explain."""
+    return levels.calibrated(level, directions, RichestResidual.of(directions, SAMPLES))
 
 
 def _white(random: np.random.Generator) -> Array:
@@ -157,6 +164,27 @@ def test_residual_that_a_candidate_explains_does_not_raise_the_level() -> None:
     assert calibrated(_level(), _directions(explained)).critical == pytest.approx(
         calibrated(_level(), _directions(noise)).critical, rel=0.02
     )
+
+
+def test_autocorrelation_by_effects_that_are_missing_as_well_does_not_reduce_the_share() -> None:
+    shapes, slow = _shapes(), _slow(np.random.default_rng(2))
+    white = _white(np.random.default_rng(1))
+    for noise, least, most in ((white, 0.9, 1.0), (slow, 0.01, 0.1)):
+        residual_n = noise + 30.0 * np.std(noise) * (shapes[0] + shapes[3])
+        residual_n -= LAW @ np.linalg.lstsq(LAW, residual_n)[0]
+        directions = _directions(residual_n, shapes)
+        assert max(float(d.counted[0]) for d in directions) < 0.1
+        residual = RichestResidual.of(directions, SAMPLES)
+        assert residual is not None
+        assert least < residual.share <= most
+        assert residual.share == pytest.approx(
+            independent_share(np.split(noise, RUNS), SAMPLES.steps_s), abs=0.05
+        )
+        counted = [float(residual.counted(d).counted[0]) for d in directions]
+        assert least / 2.0 < min(counted)
+        assert max(counted) <= most
+        other = [np.zeros(N - 1)] + [np.zeros(N)] * (RUNS - 1)
+        assert residual.share_of(other) is None
 
 
 def _one_direction(direction: Array, noise: Array, blocks: list[int]) -> Directions:

@@ -23,7 +23,7 @@ from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_force, variance_by_run
-from jbf.diagnosis.terms.proposal import Model, Term, is_accepted
+from jbf.diagnosis.terms.proposal import Model, Proposal, Term, is_accepted
 from jbf.diagnosis.terms.quantiser import quantiser
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
 from jbf.estimation.campaign import Campaign
@@ -62,10 +62,13 @@ class TermUpdate:
         The campaign with a term added, or with a random effect removed.
     effects
         Effects that are still needed.
+    motion_of
+        Effects with which the errors of the motion were re-estimated; None if they are unchanged.
     """
 
     campaign: Campaign
     effects: Names
+    motion_of: Names | None = None
 
 
 def best_term_update(
@@ -87,7 +90,7 @@ def best_term_update(
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
-    estimates = [(term(full), full) for term in terms]
+    estimates = [(_estimate(term, candidates, full), full) for term in terms]
     explained = explained_by_delays(present)
     if explained and min_evidence is None:
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
@@ -96,7 +99,9 @@ def best_term_update(
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
         if is_accepted(proposal, model, min_evidence or 0.0):
-            return TermUpdate(proposal.campaign, proposal.problem.effects)
+            effects = proposal.problem.effects
+            changed = proposal.campaign.samples.motion is not candidates.campaign.samples.motion
+            return TermUpdate(proposal.campaign, effects, effects if changed else None)
     fewer = without_random_effect(full) if min_evidence is None else None
     return None if fewer is None else TermUpdate(fewer, present)
 
@@ -104,8 +109,18 @@ def best_term_update(
 def re_estimated_motion(candidates: Candidates, present: Names) -> Campaign | None:
     """Campaign with the errors of the motion estimated again; None if they do not change."""
     model = _model(candidates, present, present)
-    proposal = errors_of_motion(model)
+    proposal = _estimate(errors_of_motion, candidates, model)
     return proposal.campaign if proposal is not None and is_accepted(proposal, model) else None
+
+
+def _estimate(term: Term, candidates: Candidates, model: Model) -> Proposal | None:
+    """Estimate a term; the errors of the motion are estimated once for each set of effects."""
+    if term is not errors_of_motion:
+        return term(model)
+    fitted = candidates.fitted(model.problem.effects)
+    if not fitted.motion_known:
+        fitted.motion, fitted.motion_known = errors_of_motion(model), True
+    return fitted.motion
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:

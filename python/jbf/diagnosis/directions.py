@@ -1,0 +1,188 @@
+"""Score directions of candidate effects, and the residual without all that candidates can explain.
+
+An autocorrelated residual has two causes: correlated noise, and effects that the model lacks. Only
+noise reduces the number of independent samples. The residual of the richest model, which contains
+all candidates, is the best estimate of the noise.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.likelihood import independent_share
+from jbf.estimation.samples import Samples
+from jbf.estimation.variance import Places, blocks_of, significant_inflation
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Directions:
+    """Part of the Jacobian of an effect that the rest of the model cannot reproduce.
+
+    The rows are those of the whitened likelihood (innovations), the columns the score directions of
+    the parameters of the effect.
+
+    Attributes
+    ----------
+    ways
+        Orthonormal basis of this part, orthogonal to the Jacobian of the model without the effect,
+        shape (n, k).
+    innovations
+        Innovations of the model without the effect, scaled to unit variance, shape (n,).
+    counted
+        Factors on the squared scores, below one in autocorrelated noise, shape (k,).
+    blocks
+        First row of each block of the wild bootstrap.
+    ends
+        First row of each run but the first.
+    """
+
+    ways: Array
+    innovations: Array
+    counted: Array
+    blocks: Places
+    ends: Places
+
+    @classmethod
+    def of(
+        cls, innovations: Array, effect: Array, law: Array, samples: Samples, share: float
+    ) -> Directions:
+        """Compute the score directions of an effect from the whitened rows of a likelihood.
+
+        Parameters
+        ----------
+        innovations
+            Innovations of the model without the effect, shape (n,).
+        effect, law
+            Derivatives with respect to the parameters of the effect, shape (n, k), and to those of
+            the model without it.
+        samples
+            Samples to which the rows belong.
+        share
+            Ratio of the effective number of samples to the number of samples.
+        """
+        size = np.linalg.norm(law, axis=0)
+        law = law[:, size > 0.0] / size[size > 0.0]
+        step, *_ = np.linalg.lstsq(law, effect, rcond=1e-10)
+        unexplained = effect - law @ step
+        length = np.linalg.norm(unexplained, axis=0)
+        independent = length > 1e-8 * np.maximum(np.linalg.norm(effect, axis=0), 1e-300)
+        ways = np.linalg.qr(unexplained[:, independent] / length[independent])[0]
+        ends = _ends(samples)
+        unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
+        parts, settings = np.split(unit, ends), samples.settings.variance
+        inflations = [
+            significant_inflation(np.split(way, ends), parts, samples.steps_s, settings)
+            for way in ways.T
+        ]
+        counted = np.array([min(share, 1.0 / m) for m in inflations])
+        return cls(ways, unit, counted, blocks_of(samples, share), ends)
+
+    def by_block(self, innovations: Array, blocks: Places) -> Array:
+        """Sums of the scores of given innovations over each block, shape (blocks, k).
+
+        The innovations are the residual without the part that candidates could explain. Scores have
+        unit variance in noise with the assumed autocorrelation.
+
+        Parameters
+        ----------
+        innovations
+            Innovations, shape (n,).
+        blocks
+            First row of each block.
+        """
+        scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
+        return scores * np.sqrt(self.counted)
+
+
+def _ends(samples: Samples) -> Places:
+    """First row of each run but the first, among the samples with nonzero weight."""
+    counts = [int(np.count_nonzero(w > 0.0)) for w in samples.weight]
+    return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
+
+
+def largest_common_group(directions: list[Directions]) -> list[Directions]:
+    """Largest group of candidates whose score directions refer to the same number of samples.
+
+    A candidate that excludes samples cannot be tested on the residual of the others.
+    """
+    counts = Counter(len(d.ways) for d in directions)
+    usual = max(counts, key=lambda count: (counts[count], count), default=0)
+    return [d for d in directions if len(d.ways) == usual]
+
+
+@dataclass(frozen=True, eq=False)
+class RichestResidual:
+    """Innovations of a model without the part that its candidates together can explain.
+
+    Attributes
+    ----------
+    innovations
+        Innovations of unit variance, one array per run.
+    samples
+        The samples of the innovations.
+    share
+        Effective number of independent samples divided by their number, 0 to 1.
+    """
+
+    innovations: tuple[Array, ...]
+    samples: Samples
+    share: float
+
+    @classmethod
+    def of(cls, directions: Sequence[Directions], samples: Samples) -> RichestResidual | None:
+        """Remove the span of all score directions; None without a direction.
+
+        Parameters
+        ----------
+        directions
+            Score directions of the candidates.
+        samples
+            The samples of the model to which the candidates were added.
+        """
+        tested = largest_common_group([d for d in directions if d.ways.size])
+        if not tested:
+            return None
+        every = np.column_stack([d.ways for d in tested])
+        noise = tested[0].innovations - _explained(every, tested[0].innovations)
+        noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
+        innovations = tuple(np.split(noise, tested[0].ends))
+        share = independent_share(innovations, samples.steps_s, samples.settings.noise)
+        return cls(innovations, samples, share)
+
+    def share_of(self, differences: Sequence[Array]) -> float | None:
+        """Share of independent samples in a gain; None if it refers to other samples.
+
+        Parameters
+        ----------
+        differences
+            Differences of the innovations of two models, one array per run.
+        """
+        if [len(d) for d in differences] != [len(e) for e in self.innovations]:
+            return None
+        samples = self.samples
+        inflation = significant_inflation(
+            differences, self.innovations, samples.steps_s, samples.settings.variance
+        )
+        return min(self.share, 1.0 / inflation)
+
+    def counted(self, directions: Directions) -> Directions:
+        """Return score directions with the share of independent samples in this residual."""
+        parts = [np.split(way, directions.ends) for way in directions.ways.T]
+        shares = [self.share_of(part) or 0.0 for part in parts]
+        return replace(directions, counted=np.maximum(directions.counted, shares))
+
+
+def _explained(ways: Array, target: Array) -> Array:
+    """Projection of `target` on the span of unit columns `ways`, which may be collinear."""
+    size, axes = np.linalg.eigh(ways.T @ ways)
+    resolved = size > 1e-12 * size[-1]
+    step = axes[:, resolved] @ ((axes[:, resolved].T @ (ways.T @ target)) / size[resolved])
+    explained: Array = ways @ step
+    return explained

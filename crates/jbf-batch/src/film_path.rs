@@ -101,7 +101,7 @@ impl<'a, T, L> OnPath<'a, T, L> {
     }
 
     /// Sets the index in the path of the last step before each sample except the first, for
-    /// [`jbf_core::run::Steps::Last`].
+    /// [`jbf_core::internals::Steps::Last`].
     pub fn at(self, ends: &'a [u32]) -> Self {
         Self {
             ends: Some(ends),

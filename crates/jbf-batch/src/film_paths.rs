@@ -3,7 +3,8 @@
 use crate::film_path::FilmStep;
 use crate::lane::Lane;
 use crate::simd::Simd;
-use jbf_core::law::journal::{Journal, SideBySide};
+use jbf_core::internals::SideBySide;
+use jbf_core::law::journal::Journal;
 use jbf_core::law::Law;
 use jbf_core::stepper::Rk4;
 use jbf_core::Real;

@@ -119,7 +119,7 @@ macro_rules! through {
     )*};
 }
 
-impl<F: Float> jbf_core::sealed::Sealed for Lane<F> {}
+impl<F: Float> jbf_core::internals::Sealed for Lane<F> {}
 
 impl<F: Float> Real for Lane<F> {
     const ZERO: Self = Self(F::ZERO);

@@ -8,20 +8,20 @@
 //!
 //! ```
 //! use jbf_batch::{Batch, Method, Speeds};
-//! use jbf_core::{law::journal::{Journal, Parameters}, Bearing, Clock, ParameterError};
+//! use jbf_core::{law::journal::{Journal, Parameters}, Bearing, Clock, Error};
 //!
 //! let laws = (0..100)
 //!     .map(|i| {
 //!         let parameters = Parameters { f_m: 0.2 + 0.001 * f64::from(i), ..Parameters::TABLE_4_2 };
 //!         Journal::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal)
 //!     })
-//!     .collect::<Result<Vec<_>, ParameterError>>()?;
+//!     .collect::<Result<Vec<_>, Error>>()?;
 //! let batch = Batch::new(laws, Method::Euler);
 //! let speeds: Vec<f64> = (0..500).map(|i| 0.127 * (0.002 * f64::from(i)).sin()).collect();
 //! let mut friction = vec![0.0; 500 * 100];
 //! batch.friction(&mut batch.start(), &Speeds::Common(&speeds), 0.002, &mut friction);
 //! assert!(friction.iter().all(|f| f.is_finite()));
-//! # Ok::<(), ParameterError>(())
+//! # Ok::<(), Error>(())
 //! ```
 //!
 //! [`film_paths`] integrates a few films, each along its own motion. [`film_path`] stores the states
@@ -40,6 +40,7 @@ mod trajectories;
 
 pub use batch::{Batch, Films, Method};
 pub use film_paths::film_paths;
+pub use jbf_core::internals::Along;
 pub use lane::{Float, Lane};
 pub use simd::{Baseline, InstructionSet, Simd};
 pub use speeds::Speeds;

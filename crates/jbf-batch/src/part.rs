@@ -5,7 +5,8 @@
 use crate::batch::Method;
 use crate::lane::{Float, Lane};
 use crate::speeds::{Alike, Course, Own, Speeds};
-use jbf_core::law::journal::{Journal, SideBySide, State};
+use jbf_core::internals::SideBySide;
+use jbf_core::law::journal::{Journal, State};
 use jbf_core::law::Law;
 use jbf_core::stepper::{Euler, Rk4, Stepper};
 use jbf_core::Real;

@@ -2,12 +2,14 @@
 
 use crate::lane::Lane;
 use crate::simd::Simd;
-use jbf_core::driver::{self, Along, Cost, Excitation, Sample, Start};
+use jbf_core::driver::{Cost, Excitation, Sample, Start};
+use jbf_core::internals::{self, Along};
 use jbf_core::law::journal::Journal;
 use jbf_core::Error;
 
-/// Integrates a film along several motions with the given instruction set; see
-/// [`jbf_core::driver::follow_side_by_side`].
+/// Integrates `film` along at most `K` motions from one start with the given instruction set.
+///
+/// The result is identical bit for bit to that of [`jbf_core::driver::follow`] along each motion.
 ///
 /// # Errors
 /// As [`jbf_core::driver::trajectory`].
@@ -18,10 +20,10 @@ pub fn follow_side_by_side<E: Excitation, S: FnMut(usize, &Sample<f64>), const K
     tolerance: f64,
     simd: Simd,
 ) -> Result<[Cost; K], Error> {
-    driver::follow_side_by_side(film, along, start, tolerance, |steps, stages| {
+    internals::follow_side_by_side(film, along, start, tolerance, |steps, stages| {
         simd.dispatch(
             #[inline(always)]
-            || driver::step_side_by_side::<Lane<f64>, K>(steps, stages),
+            || internals::step_side_by_side::<Lane<f64>, K>(steps, stages),
         );
     })
 }

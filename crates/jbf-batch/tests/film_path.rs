@@ -7,9 +7,10 @@ mod common;
 use common::motion::Sines;
 use jbf_batch::film_path::{FilmStep, FilmSteps, OnPath, Place};
 use jbf_core::effect::{Effect, Effects, CATALOGUE};
+use jbf_core::internals::{inner_step_s, predict_by, Steps};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::Law;
-use jbf_core::run::{inner_step_s, predict, predict_by, Record, Steps};
+use jbf_core::run::{predict, Record};
 use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
 use std::cell::RefCell;
 

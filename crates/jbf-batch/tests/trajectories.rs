@@ -1,8 +1,8 @@
 //! Tests that trajectories computed in lanes have the bits and the steps of those computed one by
 //! one.
 
-use jbf_batch::{follow_side_by_side, Simd};
-use jbf_core::driver::{follow, Along, Cost, Excitation, Sample, Sampled, Sine, Start};
+use jbf_batch::{follow_side_by_side, Along, Simd};
+use jbf_core::driver::{follow, Cost, Excitation, Sample, Sampled, Sine, Start};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Clock};
 

@@ -10,7 +10,7 @@ use jbf_core::chain::State;
 use jbf_core::effect::{Effects, CATALOGUE};
 use jbf_core::law::{Law, Named};
 use jbf_core::run::{predict, Record};
-use jbf_core::{Bearing, Chain, Motion, ParameterError, Real};
+use jbf_core::{Bearing, Chain, Error, Motion, Real};
 
 /// Largest number of parameters of a law or an effect; further ones are ignored.
 const MOST: usize = 16;
@@ -19,7 +19,7 @@ const MOST: usize = 16;
 ///
 /// # Safety
 /// `error` must be null or valid for writes.
-unsafe fn refuse(error: *mut CError, why: ParameterError) -> i32 {
+unsafe fn refuse(error: *mut CError, why: Error) -> i32 {
     if !error.is_null() {
         error.write(why.into());
     }

@@ -1,6 +1,6 @@
 //! Types of the C interface, with the memory layout of `include/jbf.h`.
 
-use jbf_core::{Bearing, Clock, Motion, ParameterError, Real};
+use jbf_core::{Bearing, Clock, Error, Motion, Real};
 
 /// Success.
 pub const OK: i32 = 0;
@@ -119,8 +119,8 @@ fn text<const N: usize>(from: &str) -> [u8; N] {
     to
 }
 
-impl From<ParameterError> for CError {
-    fn from(error: ParameterError) -> Self {
+impl From<Error> for CError {
+    fn from(error: Error) -> Self {
         Self {
             name: text(error.name()),
             rule: text(error.rule()),

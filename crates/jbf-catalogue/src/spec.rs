@@ -6,7 +6,7 @@
 
 use jbf_core::effect::Effects;
 use jbf_core::law::{with_law, Named, Visitor};
-use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
+use jbf_core::{Bearing, Chain, Clock, Error, Real};
 
 /// Name of a law with the arguments of its constructor.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ impl<T: Real> Spec<'_, T> {
         &self,
         effects: impl IntoIterator<Item = (&'e str, V)>,
         then: U,
-    ) -> Result<U::Output, ParameterError> {
+    ) -> Result<U::Output, Error> {
         let mut all = Effects::NONE;
         for (name, values) in effects {
             all.set(name, values.as_ref())?;

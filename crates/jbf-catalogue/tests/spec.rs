@@ -8,7 +8,7 @@ use jbf_core::effect::sensor_lag::{self, SensorLag};
 use jbf_core::effect::{Effect, Rig};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::{Law, Named};
-use jbf_core::{Bearing, Chain, Clock, Motion, ParameterError};
+use jbf_core::{Bearing, Chain, Clock, Error, Motion};
 
 /// Load on one bearing, N.
 const LOAD_N: f64 = 104.0;
@@ -38,7 +38,7 @@ fn built(
     law: &str,
     values: &[f64],
     effects: &[(&str, &[f64])],
-) -> Result<(Vec<f64>, Rig<f64>), ParameterError> {
+) -> Result<(Vec<f64>, Rig<f64>), Error> {
     let journal = law == "journal";
     let spec = Spec {
         law,

@@ -10,7 +10,7 @@
 use jbf_core::driver::{follow, Cost, Film, Sine, Start};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ fn all<F: Film<f64, N>, const N: usize>(
     film: &F,
     tolerance: f64,
     out: &mut [f64],
-) -> Result<Cost, ParameterError> {
+) -> Result<Cost, Error> {
     let start = Start {
         phi_rad: 0.01,
         ..Start::default()
@@ -47,7 +47,7 @@ fn all<F: Film<f64, N>, const N: usize>(
     Ok(sum)
 }
 
-fn table<F: Film<f64, N>, const N: usize>(name: &str, film: &F) -> Result<(), ParameterError> {
+fn table<F: Film<f64, N>, const N: usize>(name: &str, film: &F) -> Result<(), Error> {
     println!("{name}");
     println!("tolerance     error   steps  rejected  slopes  linearised  forced  time, ms");
     let mut exact = vec![0.0; SAMPLES * OMEGAS_RAD_S.len()];
@@ -82,7 +82,7 @@ fn table<F: Film<f64, N>, const N: usize>(name: &str, film: &F) -> Result<(), Pa
     Ok(())
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let (bearing, p) = (Bearing::THESIS, Parameters::TABLE_4_2);
     table(
         "reduced model",

@@ -7,7 +7,7 @@
 
 use jbf_core::effect::{Effects, Rig};
 use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::{Bearing, Chain, Clock, Motion, ParameterError};
+use jbf_core::{Bearing, Chain, Clock, Error, Motion};
 use std::f64::consts::TAU;
 
 const LOAD_N: f64 = 104.0;
@@ -24,7 +24,7 @@ fn motion(time_s: f64) -> Motion<f64> {
     }
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let law = Journal::new(
         &Bearing::THESIS,
         LOAD_N,

@@ -11,7 +11,7 @@ use jbf_core::law::journal::Parameters;
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::law::Law;
 use jbf_core::stepper::{Rodas3, Rodas5P, StiffStepper};
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 use std::time::Instant;
 
 const DT_S: f64 = 0.002;
@@ -33,7 +33,7 @@ fn run(law: &JournalFull<f64>, stepper: &impl StiffStepper) -> (Vec<f64>, f64) {
     (f, clock.elapsed().as_secs_f64() * 1e9 / STEPS as f64)
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let (bearing, table) = (Bearing::THESIS, Parameters::TABLE_4_2);
     let law = JournalFull::new(&bearing, 104.0, &table, Clock::Journal)?;
     let times: Vec<f64> = (1..=STEPS).map(|i| DT_S * i as f64).collect();

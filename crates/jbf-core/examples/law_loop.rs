@@ -7,7 +7,7 @@
 
 use jbf_core::effect::{Effects, Rig};
 use jbf_core::law::{steady_n, with_law, Named, Visitor, CATALOGUE};
-use jbf_core::{Chain, Clock, Motion, ParameterError};
+use jbf_core::{Chain, Clock, Error, Motion};
 use std::f64::consts::TAU;
 
 /// Imposed motion at a time: a stroke of 2 mm every two seconds.
@@ -46,7 +46,7 @@ impl Visitor<f64> for Table {
     }
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let name = std::env::args().nth(1).unwrap_or("lugre".into());
     let Some(law) = CATALOGUE
         .iter()

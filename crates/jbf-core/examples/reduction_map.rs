@@ -10,7 +10,7 @@
 use jbf_core::driver::{trajectory, Film, Sine};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 use std::f64::consts::TAU;
 
 const SAMPLES: usize = 1000;
@@ -24,7 +24,7 @@ fn loop_of<F: Film<f64, N>, const N: usize>(
     settling_s: f64,
     amplitude_m_s: f64,
     omega_rad_s: f64,
-) -> Result<Vec<f64>, ParameterError> {
+) -> Result<Vec<f64>, Error> {
     let period = TAU / omega_rad_s;
     let from = (settling_s / period).ceil() * period;
     let times: Vec<f64> = (1..SAMPLES)
@@ -36,7 +36,7 @@ fn loop_of<F: Film<f64, N>, const N: usize>(
     Ok(f.into_iter().map(f64::abs).collect())
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     println!("clock,amplitude_m_s,omega_rad_s,difference");
     for clock in [Clock::Journal, Clock::Thesis] {
         let (bearing, p) = (Bearing::THESIS, Parameters::TABLE_4_2);

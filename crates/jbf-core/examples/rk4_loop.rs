@@ -9,11 +9,11 @@ use jbf_core::driver::{trajectory, Sine};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::Law;
 use jbf_core::stepper::Rk4;
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 
 const OMEGA_RAD_S: f64 = 2.0;
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let (bearing, table) = (Bearing::THESIS, Parameters::TABLE_4_2);
     let law = Journal::new(&bearing, 104.0, &table, Clock::Journal)?;
     println!("Runge-Kutta, largest error of f over two periods (the loop's peak is 0.07):");

@@ -4,9 +4,9 @@
 //! `cargo run -p jbf-core --example stribeck_curve`
 
 use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let law = Journal::new(
         &Bearing::THESIS,
         104.0,

@@ -11,7 +11,7 @@ use jbf_core::effect::sensor_lag::{self, SensorLag};
 use jbf_core::effect::{Effect, Rig};
 use jbf_core::law::stribeck::{self, Stribeck};
 use jbf_core::JournalMotion;
-use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
+use jbf_core::{Chain, Error, Friction, Motion, Real};
 
 /// Wiper with the friction `F_w (1 + sin th)/2`, where `th` is the shaft angle.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ impl<T: Real> Effect<T> for Wiper<T> {
     }
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let law = Stribeck::new(stribeck::Parameters::default())?;
     let lag = SensorLag::new(sensor_lag::Parameters { tau_s: 0.05 })?;
     let bare = Chain::new(law).with(lag);

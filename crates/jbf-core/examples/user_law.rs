@@ -11,7 +11,7 @@ use jbf_core::effect::inertia::{self, Inertia};
 use jbf_core::effect::presliding::{self, Presliding};
 use jbf_core::effect::sensor_lag::{self, SensorLag};
 use jbf_core::law::Law;
-use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
+use jbf_core::{Chain, Error, Friction, Motion, Real};
 
 /// Friction of a slide, `F_1 (|v|/v_1)^-p`, N.
 ///
@@ -52,7 +52,7 @@ impl<T: Real> Law<T> for FallingPower<T> {
     fn advance(&self, _state: &mut (), _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
 }
 
-fn main() -> Result<(), ParameterError> {
+fn main() -> Result<(), Error> {
     let law = FallingPower {
         at_unit_speed_n: 4.0,
         unit_speed_m_s: 0.01,

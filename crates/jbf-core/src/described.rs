@@ -95,13 +95,13 @@ macro_rules! described {
         #[allow(dead_code)]
         impl<T: $crate::real::Real> Parameters<T> {
             /// Creates the parameters from their values in the order of the catalogue.
-            pub(crate) fn of(values: &[T]) -> Result<Self, $crate::error::ParameterError> {
+            pub(crate) fn of(values: &[T]) -> Result<Self, $crate::error::Error> {
                 let [$($field),*] = $crate::parameter::checked(PARAMETERS, values)?;
                 Ok(Self { $($field),* })
             }
 
             /// Returns the parameters if every one is within its bounds.
-            pub(crate) fn checked(self) -> Result<Self, $crate::error::ParameterError> {
+            pub(crate) fn checked(self) -> Result<Self, $crate::error::Error> {
                 Self::of(&[$(self.$field),*])
             }
 
@@ -140,7 +140,7 @@ macro_rules! described {
             ///
             /// # Errors
             /// Reports the first parameter that is out of its bounds.
-            pub fn new(parameters: Parameters<T>) -> Result<Self, $crate::error::ParameterError> {
+            pub fn new(parameters: Parameters<T>) -> Result<Self, $crate::error::Error> {
                 parameters.checked().map(Self::with_parameters)
             }
         }

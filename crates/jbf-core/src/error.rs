@@ -80,9 +80,6 @@ pub enum Error {
     },
 }
 
-/// Former name of [`Error`].
-pub type ParameterError = Error;
-
 impl Error {
     /// Returns the name of the parameter that violates its rule; `law` or `effect` for an unknown
     /// name.

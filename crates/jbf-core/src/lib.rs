@@ -34,6 +34,7 @@ mod transition;
 pub mod chain;
 pub mod effect;
 pub mod law;
+mod prediction;
 mod record;
 pub mod run;
 
@@ -50,15 +51,15 @@ pub mod observer;
 pub mod plant;
 pub mod reference;
 
+#[doc(hidden)]
+pub mod internals;
+
 pub use bearing::Bearing;
 pub use chain::Chain;
 pub use clock::Clock;
 pub use dual::Dual;
-pub use error::{Error, ParameterError};
+pub use error::Error;
 pub use friction::Friction;
 pub use motion::{JournalMotion, Motion};
 pub use nalgebra;
 pub use real::Real;
-
-#[doc(hidden)]
-pub use real::sealed;

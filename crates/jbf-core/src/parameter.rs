@@ -3,7 +3,7 @@
 //! The description is the single source of the name, the bounds, the usual values and the behaviour
 //! under reflection.
 
-use crate::error::{check, exactly, given, needed, within, ParameterError};
+use crate::error::{check, exactly, given, needed, within, Error};
 use crate::real::Real;
 
 /// Behaviour of a parameter under reflection of the machine, which reverses every direction.
@@ -137,10 +137,7 @@ pub(crate) const fn equal_ignoring_case(a: &str, b: &str) -> bool {
 ///
 /// # Errors
 /// Reports the first value that is missing or out of bounds, or more values than parameters.
-pub(crate) fn in_bounds<T: Real>(
-    parameters: &[Parameter],
-    values: &[T],
-) -> Result<(), ParameterError> {
+pub(crate) fn in_bounds<T: Real>(parameters: &[Parameter], values: &[T]) -> Result<(), Error> {
     for (i, p) in parameters.iter().enumerate() {
         let value = given(values, i, p.name)?.value();
         if p.null != Some(value) {
@@ -169,7 +166,7 @@ pub(crate) fn defaults<const N: usize>(parameters: &[Parameter; N]) -> [f64; N] 
 pub(crate) fn checked<T: Real, const N: usize>(
     parameters: &[Parameter; N],
     values: &[T],
-) -> Result<[T; N], ParameterError> {
+) -> Result<[T; N], Error> {
     for (parameter, value) in parameters.iter().zip(values) {
         let infinite = parameter.null.is_some_and(|null| !null.is_finite());
         check(

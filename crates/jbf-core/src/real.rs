@@ -10,8 +10,8 @@ use num_traits::{One, Zero};
 
 /// Prevents other crates from implementing [`Real`], so that an additional operation does not break
 /// their code.
-#[doc(hidden)]
-pub mod sealed {
+pub(crate) mod sealed {
+    /// Marks the types that may implement a sealed trait.
     pub trait Sealed {}
 }
 

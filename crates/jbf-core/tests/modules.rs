@@ -45,10 +45,6 @@ fn imports() -> BTreeMap<String, BTreeSet<String>> {
                     let rest = &line[at + "crate::".len()..];
                     let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
                     let word = rest[..end.unwrap_or(rest.len())].to_lowercase();
-                    let word = match word.as_str() {
-                        "parametererror" => "error".to_string(),
-                        _ => word,
-                    };
                     assert!(names.contains(&word), "{}: {line}", file.display());
                     wanted.insert(word);
                 }

@@ -5,8 +5,9 @@ mod common;
 
 use common::motion::Sines;
 use common::{chain, chain_round, readings};
+use jbf_core::internals::{film_rate_1_s, inner_step_s, inner_steps};
 use jbf_core::law::{with_law, Named, Visitor, CATALOGUE};
-use jbf_core::run::{film_rate_1_s, inner_step_s, inner_steps, predict, Record};
+use jbf_core::run::{predict, Record};
 use jbf_core::{Clock, Motion};
 
 /// Columns of a sampled motion, and the temperature if there is one.

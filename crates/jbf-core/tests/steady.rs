@@ -5,7 +5,7 @@ mod common;
 
 use common::drive::drive;
 use common::table::rows;
-use jbf_core::law::journal::transition_eccentricity;
+use jbf_core::internals::transition_eccentricity;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::Law;
 use jbf_core::stepper::Rk4;

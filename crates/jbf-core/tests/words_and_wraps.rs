@@ -7,8 +7,8 @@ use common::{bench, chain, chain_round, readings};
 use jbf_core::compensator::learning::Learned;
 use jbf_core::compensator::{Axis, Table};
 use jbf_core::compensator::{Compensator, Input};
+use jbf_core::internals::read_force;
 use jbf_core::law::Law;
-use jbf_core::run::read_force;
 use jbf_core::{Friction, Motion};
 
 /// Law that declares a bristle but does not implement its deflection.

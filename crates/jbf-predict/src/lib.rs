@@ -27,7 +27,7 @@
 //! let (readings, derivatives) = model.derivatives(&parameters, &[0], &record, None)?;
 //! assert_eq!(readings, model.readings(&parameters, &record, None)?);
 //! assert_eq!(derivatives.len(), 3);
-//! # Ok::<(), jbf_core::ParameterError>(())
+//! # Ok::<(), jbf_core::Error>(())
 //! ```
 
 mod model;

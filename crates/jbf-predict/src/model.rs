@@ -6,7 +6,7 @@ use jbf_batch::Baseline;
 use jbf_catalogue::{Spec, Using};
 use jbf_core::effect::Info;
 use jbf_core::run::Record;
-use jbf_core::{law, Bearing, Clock, ParameterError, Real};
+use jbf_core::{law, Bearing, Clock, Error, Real};
 
 /// Prediction model: a friction law with effects.
 ///
@@ -48,7 +48,7 @@ impl Model<'_> {
         &self,
         parameters: &[T],
         then: U,
-    ) -> Result<U::Output, ParameterError> {
+    ) -> Result<U::Output, Error> {
         let (values, mut rest) = parameters.split_at(self.law.parameters.len());
         let effects = self.effects.iter().map(|info| {
             let (own, after) = rest.split_at(info.parameters.len());
@@ -75,7 +75,7 @@ impl Model<'_> {
         parameters: &[f64],
         record: &Record<'_>,
         path: Option<FilmPath<'_>>,
-    ) -> Result<Vec<f64>, ParameterError> {
+    ) -> Result<Vec<f64>, Error> {
         let mut readings = vec![0.0; record.time_s.len()];
         let run = Run {
             record,

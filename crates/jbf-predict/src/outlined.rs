@@ -11,7 +11,8 @@
 
 use core::cell::RefCell;
 use jbf_batch::InstructionSet;
-use jbf_core::effect::{Effect, Effects, OccupiedStages, Resistance, Rig, Signal, States};
+use jbf_core::effect::{Effect, Effects, Resistance, Rig, Signal, States};
+use jbf_core::internals::OccupiedStages;
 use jbf_core::law::Scales;
 use jbf_core::{Friction, JournalMotion, Motion, Real};
 

@@ -5,7 +5,7 @@ use crate::model::{FilmPath, Model};
 use crate::run::Run;
 use jbf_batch::{Baseline, InstructionSet, Simd};
 use jbf_core::run::Record;
-use jbf_core::{Dual, ParameterError, Real};
+use jbf_core::{Dual, Error, Real};
 
 /// Number of parameters in the shortest pass, usually those of a law.
 const FEW: usize = 4;
@@ -51,7 +51,7 @@ impl Model<'_> {
         which: &[usize],
         record: &Record<'_>,
         path: Option<FilmPath<'_>>,
-    ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
+    ) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let pass = Pass {
             model: self,
             parameters,
@@ -88,7 +88,7 @@ impl Pass<'_> {
     fn of_any_width<I: InstructionSet>(
         &self,
         instructions: I,
-    ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
+    ) -> Result<(Vec<f64>, Vec<f64>), Error> {
         match self.which.len() {
             n if n <= FEW => self.of::<FEW, I>(instructions),
             n if n <= MANY => self.of::<MANY, I>(instructions),
@@ -99,7 +99,7 @@ impl Pass<'_> {
     fn of<const LANES: usize, I: InstructionSet>(
         &self,
         instructions: I,
-    ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
+    ) -> Result<(Vec<f64>, Vec<f64>), Error> {
         assert!(
             self.which.len() <= LANES,
             "too many parameters for one pass"

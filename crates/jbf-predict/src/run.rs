@@ -6,9 +6,9 @@ use jbf_batch::film_path::OnPath;
 use jbf_batch::InstructionSet;
 use jbf_catalogue::Using;
 use jbf_core::effect::Effect;
+use jbf_core::internals::{self, Steps};
 use jbf_core::law::{Law, Named};
 use jbf_core::run::Record;
-use jbf_core::run::{self, Steps};
 use jbf_core::{Chain, Motion, Real};
 use std::cell::RefCell;
 
@@ -29,7 +29,7 @@ impl<T: Real, I: InstructionSet> Run<'_, T, I> {
     fn inlined<L: Law<T>, E: Effect<T>>(self, chain: &Chain<T, L, E>, steps: Steps) {
         self.instructions.call(
             #[inline(always)]
-            || run::predict_by(chain, self.record, self.max_step_s, steps, self.sink),
+            || internals::predict_by(chain, self.record, self.max_step_s, steps, self.sink),
         );
     }
 

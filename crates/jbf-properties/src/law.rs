@@ -6,7 +6,7 @@
 use crate::bytes::{between, clock, number, parameters, step_s};
 use crate::steps::seen;
 use arbitrary::{Result, Unstructured};
-use jbf_core::chain::SHORTEST_STEP_S;
+use jbf_core::internals::SHORTEST_STEP_S;
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{Bearing, Chain, Motion, Real};
 

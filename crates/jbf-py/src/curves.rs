@@ -1,7 +1,7 @@
 //! Curves of a law without effects: film integrals, transition eccentricity, Stribeck curve.
 
 use crate::bearing::{refused, Sizes};
-use jbf_core::law::journal::{self, FilmIntegrals};
+use jbf_core::internals::{self, FilmIntegrals};
 use jbf_core::law::maxwell_slip::MaxwellSlip;
 use jbf_core::law::Named;
 use jbf_core::{law, Clock};
@@ -30,7 +30,7 @@ pub fn transition_eccentricity(load_number: f64) -> PyResult<f64> {
             "load_number = {load_number} must be positive and finite"
         )));
     }
-    Ok(journal::transition_eccentricity(load_number))
+    Ok(internals::transition_eccentricity(load_number))
 }
 
 /// Steady friction of a law at speeds (m/s, not zero), N.

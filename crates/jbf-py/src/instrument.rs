@@ -3,7 +3,7 @@
 
 use crate::bearing::refused;
 use jbf_core::effect::Effects;
-use jbf_core::{run, Dual, ParameterError};
+use jbf_core::{internals, Dual, Error};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -31,10 +31,10 @@ pub fn read_force<'py>(
     let columns: usize = effects.iter().map(|(_, values)| values.len()).sum();
     let mut values = vec![0.0; n];
     let mut slopes = vec![0.0; n * columns];
-    let mut read = || -> Result<(), ParameterError> {
+    let mut read = || -> Result<(), Error> {
         for first in (0..columns.max(1)).step_by(LANES) {
             let chain = lifted(&effects, first)?;
-            run::read_force(&chain, time_s, force_n, |i, reading| {
+            internals::read_force(&chain, time_s, force_n, |i, reading| {
                 values[i] = reading.value;
                 for (lane, &slope) in reading.slope.iter().enumerate() {
                     if first + lane < columns {
@@ -53,10 +53,7 @@ pub fn read_force<'py>(
 
 /// Creates the effects, with derivatives with respect to the `LANES` parameters from number `first`
 /// on.
-fn lifted(
-    effects: &[(String, Vec<f64>)],
-    first: usize,
-) -> Result<Effects<Dual<LANES>>, ParameterError> {
+fn lifted(effects: &[(String, Vec<f64>)], first: usize) -> Result<Effects<Dual<LANES>>, Error> {
     let mut all = Effects::NONE;
     let mut number = 0;
     for (name, values) in effects {

@@ -20,10 +20,10 @@ mod recorded_motion;
 mod share;
 mod trajectory;
 
-use jbf_core::effect::drive_compliance;
-use jbf_core::law::lugre::{self, LuGre};
-use jbf_core::law::seven_parameter::{self, SevenParameter};
-use jbf_core::law::{rate_and_state, Law};
+use jbf_core::internals;
+use jbf_core::law::lugre::LuGre;
+use jbf_core::law::seven_parameter::SevenParameter;
+use jbf_core::law::Law;
 use pyo3::prelude::*;
 
 /// Adds every class and function to the extension module `jbf._core`.
@@ -32,24 +32,24 @@ use pyo3::prelude::*;
 /// Errors of the Python interpreter.
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;
+    m.add("FASTEST_FILM_1_S", internals::FASTEST_FILM_1_S)?;
     m.add(
         "DRIVE_COMPLIANCE_MOST_INNER_STEPS",
-        drive_compliance::MOST_INNER_STEPS,
+        internals::DRIVE_COMPLIANCE_MOST_INNER_STEPS,
     )?;
     m.add(
         "DRIVE_COMPLIANCE_LONGEST_INNER_STEP",
-        drive_compliance::LONGEST_INNER_STEP,
+        internals::DRIVE_COMPLIANCE_LONGEST_INNER_STEP,
     )?;
     m.add(
         "DRIVE_COMPLIANCE_SHORTEST_STEP_S",
-        drive_compliance::SHORTEST_STEP_S,
+        internals::DRIVE_COMPLIANCE_SHORTEST_STEP_S,
     )?;
-    m.add("LUGRE_LONGEST_STEP_S", lugre::LONGEST_STEP_S)?;
+    m.add("LUGRE_LONGEST_STEP_S", internals::LUGRE_LONGEST_STEP_S)?;
     m.add("LUGRE_STEPS_PER_SAMPLE", LuGre::<f64>::ENOUGH_STEPS)?;
     m.add(
         "SEVEN_PARAMETER_LONGEST_STEP_S",
-        seven_parameter::LONGEST_STEP_S,
+        internals::SEVEN_PARAMETER_LONGEST_STEP_S,
     )?;
     m.add(
         "SEVEN_PARAMETER_STEPS_PER_SAMPLE",
@@ -57,13 +57,13 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     )?;
     m.add(
         "SEVEN_PARAMETER_DELAY_POINTS",
-        seven_parameter::DELAY_POINTS,
+        internals::SEVEN_PARAMETER_DELAY_POINTS,
     )?;
-    m.add("RATE_AND_STATE_AGES_S", rate_and_state::AGES_S)?;
-    m.add("RATE_AND_STATE_LONGEST", rate_and_state::LONGEST)?;
+    m.add("RATE_AND_STATE_AGES_S", internals::RATE_AND_STATE_AGES_S)?;
+    m.add("RATE_AND_STATE_LONGEST", internals::RATE_AND_STATE_LONGEST)?;
     m.add(
         "RATE_AND_STATE_FAR_ABOVE_CREEP",
-        rate_and_state::FAR_ABOVE_CREEP,
+        internals::RATE_AND_STATE_FAR_ABOVE_CREEP,
     )?;
     m.add_class::<motion::Motion>()?;
     m.add_class::<chain::Chain>()?;

@@ -7,7 +7,7 @@ use crate::pool::on_pool;
 use jbf_core::driver::{follow, Cost, Film, Sample, Sampled, Sine, Start};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
-use jbf_core::{Bearing, Clock, Dual, ParameterError, Real};
+use jbf_core::{Bearing, Clock, Dual, Error, Real};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -38,7 +38,7 @@ trait Number: Real + Send + Sync {
         runs: &[Run],
         start: &Start<Self>,
         tolerance: f64,
-    ) -> Result<Vec<Result1>, ParameterError> {
+    ) -> Result<Vec<Result1>, Error> {
         all(film, runs, start, tolerance)
     }
 }
@@ -53,7 +53,7 @@ impl Number for f64 {
         runs: &[Run],
         start: &Start<f64>,
         tolerance: f64,
-    ) -> Result<Vec<Result1>, ParameterError> {
+    ) -> Result<Vec<Result1>, Error> {
         lanes::all_in_lanes(film, runs, start, tolerance)
     }
 }
@@ -84,7 +84,7 @@ type Columns<'py> = (
     Option<Bound<'py, PyArray2<f64>>>,
 );
 
-fn refused(error: ParameterError) -> PyErr {
+fn refused(error: Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
@@ -93,7 +93,7 @@ fn one<T: Number, F: Film<T, N>, const N: usize>(
     run: &Run,
     start: &Start<T>,
     tolerance: f64,
-) -> Result<Result1, ParameterError> {
+) -> Result<Result1, Error> {
     let n = run.time_s.len();
     let mut coefficient = vec![0.0; n];
     let (mut x, mut y) = (vec![0.0; n], vec![0.0; n]);
@@ -128,7 +128,7 @@ fn all<T: Number, F: Film<T, N> + Sync, const N: usize>(
     runs: &[Run],
     start: &Start<T>,
     tolerance: f64,
-) -> Result<Vec<Result1>, ParameterError> {
+) -> Result<Vec<Result1>, Error> {
     runs.par_iter()
         .with_max_len(1)
         .map(|run| one(film, run, start, tolerance))
@@ -152,7 +152,7 @@ impl Asked {
         &self,
         parameters: &Parameters<T>,
         runs: &[Run],
-    ) -> Result<Vec<Result1>, ParameterError> {
+    ) -> Result<Vec<Result1>, Error> {
         let (load_n, clock) = (self.load_n, self.clock);
         let start = Start {
             time_s: self.start_time_s,

@@ -16,7 +16,7 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::plant::Drive;
-use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
+use jbf_core::{Bearing, Chain, Clock, Error, Real};
 
 const LOAD_N: f64 = 104.0;
 /// Number of entries of a look-up table, and of cells of a lap in a repetitive compensator.
@@ -37,7 +37,7 @@ pub trait LoopVisitor<T: Real> {
 pub fn around<T: Real, C: Compensator<T>>(
     compensator: C,
     position: bool,
-) -> Result<Controller<T, C>, ParameterError> {
+) -> Result<Controller<T, C>, Error> {
     let law = if position {
         BaseLaw::position(&Drive::THESIS).cast()
     } else {
@@ -56,20 +56,17 @@ pub fn around<T: Real, C: Compensator<T>>(
 }
 
 /// Creates the velocity observer of Appendix E of Cohn (1998).
-pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, ParameterError> {
+pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, Error> {
     VelocityObserver::with_feedforward(100.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, LOOP_STEP_S)
 }
 
 /// Creates the Coulomb friction observer.
-pub fn coulomb_observer<T: Real>(
-    gain: f64,
-    exponent: f64,
-) -> Result<CoulombObserver<T>, ParameterError> {
+pub fn coulomb_observer<T: Real>(gain: f64, exponent: f64) -> Result<CoulombObserver<T>, Error> {
     CoulombObserver::new(gain, exponent, DRIVE.input_rad_s2_v, 5.0, LOOP_STEP_S)
 }
 
 /// Creates a compensator with the Coulomb friction observer.
-pub fn coulomb<T: Real>(gain: f64, exponent: f64) -> Result<Coulomb<T>, ParameterError> {
+pub fn coulomb<T: Real>(gain: f64, exponent: f64) -> Result<Coulomb<T>, Error> {
     Ok(Coulomb::new(coulomb_observer(gain, exponent)?, &DRIVE))
 }
 
@@ -83,7 +80,7 @@ fn parameters<T: Real>() -> Parameters<T> {
 }
 
 /// Creates a journal law without inertia, fitted to the loop of Cohn (1998).
-pub fn reduced<T: Real>() -> Result<LawModel<T, Journal<T>>, ParameterError> {
+pub fn reduced<T: Real>() -> Result<LawModel<T, Journal<T>>, Error> {
     Ok(bare(Journal::new(
         &Bearing::THESIS,
         LOAD_N,
@@ -93,7 +90,7 @@ pub fn reduced<T: Real>() -> Result<LawModel<T, Journal<T>>, ParameterError> {
 }
 
 /// Creates a journal law with inertia.
-pub fn full<T: Real>() -> Result<LawModel<T, JournalFull<T>>, ParameterError> {
+pub fn full<T: Real>() -> Result<LawModel<T, JournalFull<T>>, Error> {
     Ok(bare(JournalFull::new(
         &Bearing::THESIS,
         LOAD_N,
@@ -107,7 +104,7 @@ fn bare<T: Real, L>(law: L) -> LawModel<T, L> {
 }
 
 /// Creates a chain of a journal law without inertia and presliding.
-pub fn chained<T: Real>() -> Result<ChainModel<T, Journal<T>, Presliding<T>>, ParameterError> {
+pub fn chained<T: Real>() -> Result<ChainModel<T, Journal<T>, Presliding<T>>, Error> {
     let presliding = Presliding::new(presliding::Parameters {
         sigma: T::of(0.26 * COUNTS_PER_RAD / 0.0127),
     })?;
@@ -121,7 +118,7 @@ pub fn chained<T: Real>() -> Result<ChainModel<T, Journal<T>, Presliding<T>>, Pa
 pub fn observed<T: Real, M: FrictionModel<T>>(
     model: M,
     position: bool,
-) -> Result<Observed<T, M>, ParameterError> {
+) -> Result<Observed<T, M>, Error> {
     let settings = Settings::new(&DRIVE, 60.0, 0.05027, LOOP_STEP_S)
         .with_learning_1_s(2.0)
         .with_level_limit_v(0.73)
@@ -139,7 +136,7 @@ pub fn observed<T: Real, M: FrictionModel<T>>(
 }
 
 /// Creates the learning compensator of Cohn (1998).
-pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> {
+pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, Error> {
     let p = Parameters {
         f_m: T::of(0.26),
         u_tr_m_s: T::of(0.05),
@@ -162,19 +159,19 @@ pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> 
 }
 
 /// Creates a compensator with a look-up table against speed.
-pub fn table<T: Real>() -> Result<Table<T, ENTRIES>, ParameterError> {
+pub fn table<T: Real>() -> Result<Table<T, ENTRIES>, Error> {
     let level = |i: usize| T::of(0.7 - 0.4 * i as f64 / (i as f64 + 8.0));
     Table::new(core::array::from_fn(level), Axis::Speed, 0.5, 0.01)
 }
 
 /// Creates a repetitive compensator.
-pub fn repetitive<T: Real>() -> Result<Repetitive<T, ENTRIES>, ParameterError> {
+pub fn repetitive<T: Real>() -> Result<Repetitive<T, ENTRIES>, Error> {
     Repetitive::new(500, 0.6, 0.1, 0.02, 3.0, LOOP_STEP_S)
 }
 
 /// Calls `visit` with every loop in velocity control, and with those that differ in position
 /// control.
-pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), ParameterError> {
+pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), Error> {
     macro_rules! on {
         ($($name:literal, $position:literal: $compensator:expr;)*) => {
             $(visit.visit($name, &around($compensator, $position)?, $position);)*

@@ -4,7 +4,7 @@
 //! It uses polar coordinates, the film integrals as printed, and `libm`.
 
 use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 
 const PI: f32 = core::f32::consts::PI;
 
@@ -24,7 +24,7 @@ impl Plain {
     ///
     /// # Errors
     /// None: the numbers are valid.
-    pub fn new() -> Result<Self, ParameterError> {
+    pub fn new() -> Result<Self, Error> {
         let p = Parameters {
             f_m: 0.26_f32,
             u_tr_m_s: 0.06,

@@ -42,7 +42,7 @@ def rust(model: Model, source: str = "a model") -> str:
         Origin of the model, for the comment in the first line.
     """
     n = Numbers.of(model)
-    imports = ["Chain", "ParameterError", "Real"]
+    imports = ["Chain", "Error", "Real"]
     law = f"Law::new({RUST.name(n.law)}.cast())?"
     if n.bearing is not None:
         imports.insert(0, "Bearing")
@@ -83,7 +83,7 @@ def rust(model: Model, source: str = "a model") -> str:
         "/// # Errors",
         "/// `None` for the constants above; after a change it names the invalid one.",
         "#[rustfmt::skip]",
-        f"pub fn model<T: Real>() -> Result<Chain<T, Law<T>, {effects}>, ParameterError> {{",
+        f"pub fn model<T: Real>() -> Result<Chain<T, Law<T>, {effects}>, Error> {{",
         f"    let law = {law};",
         "    Ok(Chain::new(law)",
         *(f"        {call}" for call in calls),

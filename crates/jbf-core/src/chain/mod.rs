@@ -20,7 +20,7 @@ use crate::real::Real;
 
 /// Shortest time step, s. A shorter step counts as a step of zero length, because its inverse would
 /// overflow in single precision.
-pub const SHORTEST_STEP_S: f64 = 1e-12;
+pub(crate) const SHORTEST_STEP_S: f64 = 1e-12;
 
 /// Signal chain: a friction law and the effects between motion, friction and recorded force,
 /// evaluated in a fixed order.
@@ -203,7 +203,7 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
     /// Advances the state to the motion `to`, `dt_s` later, and returns the reading of the
     /// instrument there, N.
     ///
-    /// A step shorter than [`SHORTEST_STEP_S`] and a sample that is not finite do not change the
+    /// A step shorter than 1e-12 s and a sample that is not finite do not change the
     /// state. A single invalid sample would otherwise remain in the state of a filter forever.
     #[inline(always)]
     pub fn step(&self, state: &mut State<T, L::State, E>, to: &Motion<T>, dt_s: T) -> T {

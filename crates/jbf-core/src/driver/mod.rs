@@ -25,7 +25,7 @@ mod follow;
 mod goal;
 mod kinks;
 mod sampled;
-mod side_by_side;
+pub(crate) mod side_by_side;
 mod stretch;
 mod trial;
 
@@ -33,7 +33,6 @@ pub use excitation::{Excitation, Function, Sine};
 pub use film::Film;
 pub use follow::follow;
 pub use sampled::Sampled;
-pub use side_by_side::{follow_side_by_side, step as step_side_by_side, Along};
 
 use crate::error::{check, positive, Error};
 use crate::law::journal::START_PHI_RAD;

@@ -13,7 +13,7 @@ use super::{
     zero_load_dependence,
 };
 use super::{Effect, Info, Named, Resistance, Rig, Signal, Stage};
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};

@@ -24,13 +24,13 @@ use crate::real::Real;
 ///
 /// In a step of 5 ms, they resolve the oscillation of a journal without friction up to 230 Hz. The
 /// midpoint rule is also stable for a stiffer drive, but its oscillation is not resolved.
-pub const MOST_INNER_STEPS: f64 = 24.0;
+pub(crate) const MOST_INNER_STEPS: f64 = 24.0;
 
 /// Longest integration step, relative to sqrt(J/k).
-pub const LONGEST_INNER_STEP: f64 = 0.3;
+pub(crate) const LONGEST_INNER_STEP: f64 = 0.3;
 
 /// Shortest previous step from which a change of the resistance is extrapolated, s.
-pub const SHORTEST_STEP_S: f64 = 1e-12;
+pub(crate) const SHORTEST_STEP_S: f64 = 1e-12;
 
 /// Spring and damper between the encoder and the inertia of the journal.
 #[derive(Clone, Copy, Debug)]

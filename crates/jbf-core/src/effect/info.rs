@@ -3,7 +3,7 @@
 
 use super::need::Need;
 use super::Effect;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::law;
 use crate::parameter::{in_bounds, Parameter};
 use crate::real::Real;
@@ -154,7 +154,7 @@ impl Info {
     ///
     /// # Errors
     /// Reports the first value that is missing or out of bounds, or more values than parameters.
-    pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
+    pub fn check<T: Real>(&self, values: &[T]) -> Result<(), Error> {
         in_bounds(self.parameters, values)
     }
 
@@ -185,5 +185,5 @@ pub trait Named<T: Real>: Effect<T> {
     /// # Errors
     /// Reports the first parameter that is missing, out of its bounds, or infinite where the effect
     /// vanishes. In the last case the effect must be omitted.
-    fn build(values: &[T]) -> Result<Self, ParameterError>;
+    fn build(values: &[T]) -> Result<Self, Error>;
 }

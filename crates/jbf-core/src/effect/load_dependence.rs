@@ -12,8 +12,9 @@
 //! At the nominal load the effect is zero, so records at one load do not determine the exponents.
 
 use super::registry::named_effect;
-use super::{Effect, Info, Need, Rig, Scales, Stage};
+use super::{Effect, Info, Need, Rig, Stage};
 use crate::described::described;
+use crate::law::Scales;
 use crate::motion::Motion;
 use crate::real::Real;
 

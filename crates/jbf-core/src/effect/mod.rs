@@ -54,7 +54,7 @@ pub mod vogel_viscosity;
 pub mod warm_up;
 pub mod zero_load_dependence;
 
-mod catalogue;
+pub(crate) mod catalogue;
 mod compose;
 mod info;
 mod need;
@@ -63,9 +63,8 @@ mod registry;
 mod stage;
 mod vogel;
 
-pub use crate::law::Scales;
 pub use crate::parameter::{Mirror, Parameter};
-pub use catalogue::{Effects, OccupiedStages, States, CATALOGUE};
+pub use catalogue::{Effects, States, CATALOGUE};
 pub use info::{Info, Named, Stage};
 pub use need::Need;
 pub use stage::{Effect, Resistance, Signal};

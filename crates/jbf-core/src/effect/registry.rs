@@ -5,7 +5,7 @@
 //! stage: the selected effects, and their states.
 
 use super::{Effect, Named};
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::real::Real;
 
 /// Implements [`Named`] for an effect with `Parameters`.
@@ -15,7 +15,7 @@ macro_rules! named_effect {
             const INFO: $crate::effect::Info =
                 $info.rust_type(stringify!($Owner)).parameters(PARAMETERS);
 
-            fn build(values: &[T]) -> Result<Self, $crate::error::ParameterError> {
+            fn build(values: &[T]) -> Result<Self, $crate::error::Error> {
                 Parameters::of(values).map(Self::with_parameters)
             }
         }
@@ -34,7 +34,7 @@ pub(crate) trait StageEffects<T: Real>: Effect<T> {
     /// value and this is infinite.
     ///
     /// Returns `None` if the stage has no effect with this name.
-    fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
+    fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), Error>>;
 }
 
 impl<T: Real> StageEffects<T> for () {
@@ -44,7 +44,7 @@ impl<T: Real> StageEffects<T> for () {
         true
     }
 
-    fn set(&mut self, _name: &str, _parameters: &[T]) -> Option<Result<(), ParameterError>> {
+    fn set(&mut self, _name: &str, _parameters: &[T]) -> Option<Result<(), Error>> {
         None
     }
 }
@@ -56,7 +56,7 @@ impl<T: Real, E: Named<T>, S: StageEffects<T>> StageEffects<T> for (Option<E>, S
         self.0.is_none() && self.1.is_empty()
     }
 
-    fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>> {
+    fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), Error>> {
         if name != E::INFO.name {
             return self.1.set(name, parameters);
         }
@@ -131,6 +131,7 @@ macro_rules! signal_chain {
             pub const NONE: Self = Self { $($field: StageEffects::EMPTY,)* };
 
             /// Returns the stages at which an effect is selected.
+            #[doc(hidden)]
             pub fn occupied_stages(&self) -> OccupiedStages {
                 OccupiedStages { $($field: !self.$field.is_empty(),)* }
             }
@@ -142,11 +143,11 @@ macro_rules! signal_chain {
             ///
             /// # Errors
             /// Reports the parameter that violates its rule, or an unknown name.
-            pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), ParameterError> {
+            pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), Error> {
                 $(if let Some(done) = self.$field.set(name, parameters) {
                     return done;
                 })*
-                Err(ParameterError::UnknownEffect)
+                Err(Error::UnknownEffect)
             }
         }
 

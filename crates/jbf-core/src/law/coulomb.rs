@@ -26,7 +26,7 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::real::Real;
 
@@ -95,7 +95,7 @@ impl<T: Real> Law<T> for Coulomb<T> {
 }
 
 impl SteadyCurve for Coulomb<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         Ok(self
             .friction(&false, velocity_m_s)

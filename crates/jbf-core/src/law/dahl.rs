@@ -30,7 +30,7 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::path::Leg;
@@ -160,7 +160,7 @@ impl<T: Real> Law<T> for Dahl<T> {
 }
 
 impl SteadyCurve for Dahl<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }

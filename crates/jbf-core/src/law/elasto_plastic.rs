@@ -35,7 +35,7 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::path::Leg;
@@ -149,7 +149,7 @@ impl<T: Real> Law<T> for ElastoPlastic<T> {
 }
 
 impl SteadyCurve for ElastoPlastic<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }

@@ -3,7 +3,7 @@
 use super::Law;
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::parameter::{in_bounds, Parameter};
 use crate::real::Real;
 
@@ -122,7 +122,7 @@ impl Info {
     ///
     /// # Errors
     /// Reports the first value that is missing or out of bounds, or more values than parameters.
-    pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
+    pub fn check<T: Real>(&self, values: &[T]) -> Result<(), Error> {
         in_bounds(self.parameters, values)
     }
 }
@@ -144,7 +144,7 @@ pub trait Named<T: Real>: Law<T> + Copy + Send + Sync + 'static {
         load_n: Option<f64>,
         values: &[T],
         clock: Clock,
-    ) -> Result<Self, ParameterError>;
+    ) -> Result<Self, Error>;
 }
 
 /// Law with a steady friction at each speed.
@@ -154,7 +154,7 @@ pub trait SteadyCurve {
     ///
     /// # Errors
     /// The speed must be finite and not zero: at rest friction is set-valued.
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError>;
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error>;
 }
 
 /// Operation on a law whose type is selected by name at run time; see [`super::with_law`].

@@ -33,7 +33,7 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::path::legs;
@@ -41,7 +41,7 @@ use crate::real::Real;
 
 /// Longest step with which the friction level, a nonlinear function of the speed, is sufficiently
 /// accurate if it is linear in each step, s.
-pub const LONGEST_STEP_S: f64 = 0.002;
+pub(crate) const LONGEST_STEP_S: f64 = 0.002;
 
 /// LuGre law with Stribeck curve and viscous friction.
 #[derive(Clone, Copy, Debug)]
@@ -167,7 +167,7 @@ impl<T: Real> Law<T> for LuGre<T> {
 }
 
 impl SteadyCurve for LuGre<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }

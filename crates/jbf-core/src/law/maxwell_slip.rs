@@ -53,7 +53,7 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
@@ -224,7 +224,7 @@ impl<T: Real> Law<T> for MaxwellSlip<T> {
 }
 
 impl SteadyCurve for MaxwellSlip<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         let forces = [0.0; ELEMENTS];
         Ok(self

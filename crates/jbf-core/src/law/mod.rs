@@ -34,7 +34,7 @@ pub use steady::Steady;
 
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::real::Real;

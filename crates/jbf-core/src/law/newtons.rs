@@ -4,10 +4,10 @@
 //! values are those of a machine with about 10 N of friction; a fit estimates its start values from
 //! the data.
 
-use crate::error::{check, ParameterError};
+use crate::error::{check, Error};
 
 /// Checks that a speed is finite and not zero; at rest the friction is set-valued.
-pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
+pub(super) fn moving(velocity_m_s: f64) -> Result<(), Error> {
     check(
         velocity_m_s.is_finite() && velocity_m_s != 0.0,
         "velocity_m_s",

@@ -50,18 +50,18 @@ use super::newtons::{in_newtons, moving};
 use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::real::Real;
 
 /// Smallest and largest age of a contact, s; the limits prevent an overflow in single precision.
-pub const AGES_S: [f64; 2] = [1e-30, 1e30];
+pub(crate) const AGES_S: [f64; 2] = [1e-30, 1e30];
 /// Longest sliding distance of a step in units of D_c; after a longer distance, the age is that of
 /// steady sliding.
-pub const LONGEST: f64 = 1e9;
+pub(crate) const LONGEST: f64 = 1e9;
 /// Ratio of the force to the direct effect `a` above which the inverse hyperbolic sine equals a
 /// logarithm.
-pub const FAR_ABOVE_CREEP: f64 = 40.0;
+pub(crate) const FAR_ABOVE_CREEP: f64 = 40.0;
 
 /// Rate-and-state law: friction depends on the speed and on the age of the contact.
 #[derive(Clone, Copy, Debug)]
@@ -220,7 +220,7 @@ impl<T: Real> Law<T> for RateAndState<T> {
 }
 
 impl SteadyCurve for RateAndState<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }

@@ -14,7 +14,7 @@ macro_rules! named_law {
                 _load_n: Option<f64>,
                 values: &[T],
                 _clock: $crate::clock::Clock,
-            ) -> Result<Self, $crate::error::ParameterError> {
+            ) -> Result<Self, $crate::error::Error> {
                 Parameters::of(values).map(Self::with_parameters)
             }
         }
@@ -38,12 +38,12 @@ macro_rules! laws {
             values: &[T],
             clock: Clock,
             visitor: V,
-        ) -> Result<V::Output, ParameterError> {
+        ) -> Result<V::Output, Error> {
             $(if name == <$module::$Type<T> as Named<T>>::INFO.name {
                 let law = <$module::$Type<T> as Named<T>>::build(bearing, load_n, values, clock)?;
                 return Ok(visitor.visit(law));
             })*
-            Err(ParameterError::UnknownLaw)
+            Err(Error::UnknownLaw)
         }
 
         /// Computes the steady friction (N) of the law `name` at speeds (m/s, not zero) into `out`.
@@ -58,7 +58,7 @@ macro_rules! laws {
             clock: Clock,
             velocity_m_s: &[f64],
             out: &mut [f64],
-        ) -> Result<(), ParameterError> {
+        ) -> Result<(), Error> {
             $(if name == <$module::$Type<f64> as Named<f64>>::INFO.name {
                 let law =
                     <$module::$Type<f64> as Named<f64>>::build(bearing, load_n, values, clock)?;
@@ -67,7 +67,7 @@ macro_rules! laws {
                 }
                 return Ok(());
             })*
-            Err(ParameterError::UnknownLaw)
+            Err(Error::UnknownLaw)
         }
     };
 }

@@ -35,17 +35,17 @@ use super::registry::named_law;
 use super::{Info, Law, SteadyCurve};
 use crate::delay_line::{self, DelayLine};
 use crate::described::described;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
 /// Longest inner step of a prediction, s; breakaway is resolved to one step.
-pub const LONGEST_STEP_S: f64 = 0.002;
+pub(crate) const LONGEST_STEP_S: f64 = 0.002;
 /// Number of points of the delay line of the speed; each step longer than `tau_L / (DELAY_POINTS - 4)` is
 /// a point.
-pub const DELAY_POINTS: usize = delay_line::POINTS;
+pub(crate) const DELAY_POINTS: usize = delay_line::POINTS;
 
 /// Seven-parameter model with presliding, Stribeck curve, frictional memory and rising static
 /// friction.
@@ -237,7 +237,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
 
 impl SteadyCurve for SevenParameter<f64> {
     /// Returns the friction of steady sliding after a breakaway from a long rest, N.
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         moving(velocity_m_s)?;
         let level = self.coulomb_n + self.static_n * self.share(velocity_m_s);
         Ok(level * velocity_m_s.sign() + self.viscous_n_s_m * velocity_m_s)

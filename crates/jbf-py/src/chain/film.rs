@@ -14,7 +14,7 @@ use jbf_catalogue::Using;
 use jbf_core::effect::Stage;
 use jbf_core::law::journal::Journal;
 use jbf_core::law::{Law, Named};
-use jbf_core::{run, ParameterError};
+use jbf_core::{internals, run, Error};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ impl Chain {
         p: &[f64],
         with_slopes: bool,
         motions: &[&Motion],
-    ) -> Result<Vec<Path>, ParameterError> {
+    ) -> Result<Vec<Path>, Error> {
         let before_film = |stage| matches!(stage, Stage::Drive | Stage::Lubricant | Stage::Film);
         let (Some(by), true) = (BY, self.law.name == <Journal<f64> as Named<f64>>::INFO.name)
         else {
@@ -108,7 +108,7 @@ impl Chain {
         p: &[f64],
         by: [usize; 2],
         with_slopes: bool,
-    ) -> Result<Vec<Journal<f64>>, ParameterError> {
+    ) -> Result<Vec<Journal<f64>>, Error> {
         let values = &p[..self.law.parameters.len()];
         let law = |moved: Option<(usize, f64)>| {
             let mut own = values.to_vec();
@@ -181,7 +181,7 @@ impl Using<f64> for LongestInnerStep<'_> {
     type Output = Vec<f64>;
 
     fn with<L: Named<f64>>(self, chain: jbf_core::Chain<f64, L>) -> Vec<f64> {
-        let along = |m: &&Motion| run::inner_step_s(&chain, &m.record(), self.max_step_s);
+        let along = |m: &&Motion| internals::inner_step_s(&chain, &m.record(), self.max_step_s);
         self.motions.iter().map(along).collect()
     }
 }

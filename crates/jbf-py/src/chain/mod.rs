@@ -13,7 +13,7 @@ use crate::pool::on_pool;
 use crate::share::longest_first;
 use jbf_core::effect::Info;
 use jbf_core::law;
-use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_core::{Bearing, Clock, Error};
 use jbf_predict::Model;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -50,7 +50,7 @@ impl Chain {
     }
 
     /// Computes the readings (N) along each motion, without derivatives.
-    fn values(&self, p: &[f64], motions: &[&Motion]) -> Result<Vec<Vec<f64>>, ParameterError> {
+    fn values(&self, p: &[f64], motions: &[&Motion]) -> Result<Vec<Vec<f64>>, Error> {
         let paths = self.film_paths(p, false, motions)?;
         let jobs: Vec<_> = motions.iter().zip(&paths).collect();
         longest_first(

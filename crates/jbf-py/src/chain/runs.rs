@@ -2,8 +2,8 @@
 
 use crate::motion::Motion;
 use jbf_catalogue::Using;
+use jbf_core::internals;
 use jbf_core::law::Named;
-use jbf_core::run;
 use jbf_core::Chain;
 
 /// Computes the fastest rate of the film along any of the motions, 1/s.
@@ -18,7 +18,7 @@ impl Using<f64> for FilmRate<'_> {
         let rates = self
             .motions
             .iter()
-            .map(|motion| run::film_rate_1_s(&chain, &motion.record()));
+            .map(|motion| internals::film_rate_1_s(&chain, &motion.record()));
         rates.fold(0.0, f64::max)
     }
 }
@@ -33,7 +33,7 @@ impl Using<f64> for InnerSteps<'_> {
     type Output = f64;
 
     fn with<L: Named<f64>>(self, chain: Chain<f64, L>) -> f64 {
-        let along = |m: &&Motion| run::inner_steps(&chain, &m.record(), self.max_step_s);
+        let along = |m: &&Motion| internals::inner_steps(&chain, &m.record(), self.max_step_s);
         self.motions.iter().map(along).sum()
     }
 }

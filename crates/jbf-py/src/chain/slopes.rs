@@ -7,7 +7,7 @@ use super::Chain;
 use crate::film_paths::FilmPath;
 use crate::motion::Motion;
 use crate::share::longest_first;
-use jbf_core::ParameterError;
+use jbf_core::Error;
 use jbf_predict::parameter_passes;
 
 /// Readings of a run, and their derivatives with respect to some parameters, one row per sample.
@@ -21,7 +21,7 @@ impl Chain {
         p: &[f64],
         which: &[usize],
         motions: &[&Motion],
-    ) -> Result<Vec<Slice>, ParameterError> {
+    ) -> Result<Vec<Slice>, Error> {
         let groups = parameter_passes(which);
         let paths = self.film_paths(p, true, motions)?;
         let jobs: Vec<(usize, usize)> = (0..motions.len())

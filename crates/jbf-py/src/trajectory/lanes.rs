@@ -1,10 +1,10 @@
 //! Integration of several runs of a film without inertia in the lanes of vector registers.
 
 use super::{one, Imposed, Result1, Run};
-use jbf_batch::{follow_side_by_side, Simd};
-use jbf_core::driver::{Along, Cost, Excitation, Sample, Sampled, Sine, Start};
+use jbf_batch::{follow_side_by_side, Along, Simd};
+use jbf_core::driver::{Cost, Excitation, Sample, Sampled, Sine, Start};
 use jbf_core::law::journal::Journal;
-use jbf_core::ParameterError;
+use jbf_core::Error;
 use rayon::prelude::*;
 
 /// Number of runs that are integrated in parallel lanes.
@@ -22,7 +22,7 @@ pub fn all_in_lanes(
     runs: &[Run],
     start: &Start<f64>,
     tolerance: f64,
-) -> Result<Vec<Result1>, ParameterError> {
+) -> Result<Vec<Result1>, Error> {
     // Group runs of the same kind.
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by_key(|&i| matches!(runs[i].imposed, Imposed::Record(_)));
@@ -67,7 +67,7 @@ fn together(
     runs: &[&Run],
     start: &Start<f64>,
     tolerance: f64,
-) -> Result<Vec<Result1>, ParameterError> {
+) -> Result<Vec<Result1>, Error> {
     if runs.len() < WORTH {
         return runs
             .iter()
@@ -102,7 +102,7 @@ fn in_lanes<E: Excitation>(
     runs: &[&Run],
     start: &Start<f64>,
     tolerance: f64,
-) -> Result<Vec<Result1>, ParameterError> {
+) -> Result<Vec<Result1>, Error> {
     let mut found: Vec<Result1> = runs
         .iter()
         .map(|run| {

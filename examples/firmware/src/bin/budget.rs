@@ -15,7 +15,7 @@ use jbf_core::law::journal_full::JournalFull;
 use jbf_core::law::{with_law, Law, Named, Visitor, CATALOGUE};
 use jbf_core::stepper::{Euler, Rk4, Rodas5P};
 use jbf_core::JournalMotion;
-use jbf_core::{Bearing, Clock, Motion, ParameterError, Real};
+use jbf_core::{Bearing, Clock, Error, Motion, Real};
 use jbf_firmware::board::Instructions;
 use jbf_firmware::measure::measure;
 use jbf_firmware::plain::Plain;
@@ -62,7 +62,7 @@ fn table_4_2<T: Real>() -> Parameters<T> {
     }
 }
 
-fn observers() -> Result<(), ParameterError> {
+fn observers() -> Result<(), Error> {
     let observer = black_box(velocity_observer::<f32>()?);
     let mut velocity = 0.0_f32;
     let angle = |step| {
@@ -105,7 +105,7 @@ fn observers() -> Result<(), ParameterError> {
     Ok(())
 }
 
-fn models<T: Real>(kind: &str, steps: u32) -> Result<(), ParameterError> {
+fn models<T: Real>(kind: &str, steps: u32) -> Result<(), Error> {
     let bearing = Bearing::THESIS;
     let reduced = black_box(Journal::<T>::new(
         &bearing,
@@ -174,7 +174,7 @@ impl Visitor<f32> for Bare {
     }
 }
 
-fn laws() -> Result<(), ParameterError> {
+fn laws() -> Result<(), Error> {
     for page in CATALOGUE {
         let mut values = [0.0_f32; 16];
         for (value, p) in values.iter_mut().zip(page.parameters) {
@@ -225,7 +225,7 @@ impl LoopVisitor<f32> for Looped {
 
 /// Reports the difference of the model with inertia between single and double precision, relative
 /// to the peak of the loop.
-fn precision() -> Result<(), ParameterError> {
+fn precision() -> Result<(), Error> {
     let bearing = Bearing::THESIS;
     let single = JournalFull::<f32>::new(&bearing, 104.0, &table_4_2(), Clock::Journal)?;
     let double = JournalFull::<f64>::new(&bearing, 104.0, &table_4_2(), Clock::Journal)?;
@@ -246,7 +246,7 @@ fn precision() -> Result<(), ParameterError> {
     Ok(())
 }
 
-fn plain() -> Result<(), ParameterError> {
+fn plain() -> Result<(), Error> {
     let mut model = black_box(Plain::new()?);
     let speed = |step| two_way::<f32>(step, 1.0).velocity_m_s;
     measure(
@@ -261,7 +261,7 @@ fn plain() -> Result<(), ParameterError> {
     Ok(())
 }
 
-fn all() -> Result<(), ParameterError> {
+fn all() -> Result<(), Error> {
     observers()?;
     models::<f32>("f32", PERIOD)?;
     plain()?;

@@ -11,12 +11,12 @@ use cortex_m_rt::{entry, exception};
 use jbf_core::compensator::Compensator;
 use jbf_core::controller::Controller;
 use jbf_core::reference::Target;
-use jbf_core::ParameterError;
+use jbf_core::Error;
 use jbf_firmware::board;
 use jbf_trace::loops;
 
 /// Creates the control loop with the selected compensator.
-fn chosen() -> Result<Controller<f32, impl Compensator<f32>>, ParameterError> {
+fn chosen() -> Result<Controller<f32, impl Compensator<f32>>, Error> {
     #[cfg(feature = "none")]
     let compensator = jbf_core::compensator::NoCompensation;
     #[cfg(feature = "coulomb")]

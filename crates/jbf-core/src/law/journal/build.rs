@@ -3,7 +3,7 @@
 use super::{Journal, Loaded, Parameters};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::{check, not_negative, positive, ParameterError};
+use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
 use core::f64::consts::PI;
 
@@ -17,7 +17,7 @@ impl<T: Real> Journal<T> {
         load_n: f64,
         parameters: &Parameters<T>,
         clock: Clock,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         let bearing = bearing.checked()?;
         positive("load_n", load_n)?;
         let p = parameters;
@@ -70,7 +70,7 @@ impl<T: Real> Journal<T> {
     ///
     /// # Errors
     /// `eps_tr` must lie between 0 and 1.
-    pub fn with_eps_tr(mut self, eps_tr: f64) -> Result<Self, ParameterError> {
+    pub fn with_eps_tr(mut self, eps_tr: f64) -> Result<Self, Error> {
         check(
             eps_tr > 0.0 && eps_tr < 1.0,
             "eps_tr",

@@ -34,16 +34,13 @@ mod film_motion;
 mod film_slopes;
 mod named;
 mod parameters;
-mod side_by_side;
+pub(crate) mod side_by_side;
 mod state;
 mod stribeck;
 
-pub use crate::film::FilmIntegrals;
-pub use crate::transition::transition_eccentricity;
 pub(in crate::law) use named::parts;
 pub use parameters::Parameters;
 pub(in crate::law) use parameters::{PARAMETERS, SUMMARY};
-pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 
 use super::Law;
@@ -53,6 +50,7 @@ use crate::friction::Friction;
 use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
+use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 pub(crate) use film_motion::square;
 use film_motion::{within, Asperities, Film, Gap};
@@ -167,6 +165,7 @@ impl<T: Real> Journal<T> {
     /// Advances the film by one step with any explicit method, always inlined.
     ///
     /// It is [`Journal::advance_with`] for loops that are compiled for a wider instruction set.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn advance_inline<S: Stepper>(
         &self,

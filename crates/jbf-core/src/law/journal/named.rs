@@ -3,7 +3,7 @@
 use super::{Journal, Parameters, PARAMETERS, SUMMARY};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::{exactly, needed, ParameterError};
+use crate::error::{exactly, needed, Error};
 use crate::law::{Info, Named, SteadyCurve};
 use crate::real::Real;
 
@@ -26,7 +26,7 @@ impl<T: Real> Named<T> for Journal<T> {
         load_n: Option<f64>,
         values: &[T],
         clock: Clock,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         let (bearing, load_n, parameters) = parts(bearing, load_n, values)?;
         Journal::new(bearing, load_n, &parameters, clock)
     }
@@ -37,7 +37,7 @@ pub(in crate::law) fn parts<'a, T: Real>(
     bearing: Option<&'a Bearing>,
     load_n: Option<f64>,
     values: &[T],
-) -> Result<(&'a Bearing, f64, Parameters<T>), ParameterError> {
+) -> Result<(&'a Bearing, f64, Parameters<T>), Error> {
     exactly("parameters", values.len(), PARAMETERS.len())?;
     let bearing = needed("bearing", bearing)?;
     let load_n = needed("load_n", load_n)?;
@@ -51,7 +51,7 @@ pub(in crate::law) fn parts<'a, T: Real>(
 }
 
 impl SteadyCurve for Journal<f64> {
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         Ok(self.steady(velocity_m_s)?.coefficient * self.nominal().load_n)
     }
 }

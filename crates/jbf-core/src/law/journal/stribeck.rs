@@ -1,7 +1,7 @@
 //! Stribeck curve of the journal law: its steady states, (3.5) and (3.6) of Cohn (1998).
 
 use super::Journal;
-use crate::error::{check, ParameterError};
+use crate::error::{check, Error};
 use crate::law::{steady, Steady};
 use crate::real::Real;
 
@@ -11,7 +11,7 @@ impl Journal<f64> {
     ///
     /// # Errors
     /// The speed must be finite and not zero: at rest the friction is set-valued.
-    pub fn steady(&self, velocity_m_s: f64) -> Result<Steady, ParameterError> {
+    pub fn steady(&self, velocity_m_s: f64) -> Result<Steady, Error> {
         check(
             velocity_m_s.is_finite() && velocity_m_s != 0.0,
             "velocity_m_s",

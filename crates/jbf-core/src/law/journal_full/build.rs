@@ -3,7 +3,7 @@
 use super::JournalFull;
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::{check, ParameterError};
+use crate::error::{check, Error};
 use crate::law::journal::{Journal, Parameters};
 use crate::real::Real;
 
@@ -18,7 +18,7 @@ impl<T: Real> JournalFull<T> {
         load_n: f64,
         parameters: &Parameters<T>,
         clock: Clock,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         let film = Journal::new(bearing, load_n, parameters, clock)?;
         let mass_number = bearing.mass_number(parameters.u_tr_m_s);
         let inverse_mass_number = T::ONE / mass_number;

@@ -3,7 +3,7 @@
 use super::JournalFull;
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::law::journal::{parts, PARAMETERS};
 use crate::law::{Info, Named, SteadyCurve};
 use crate::real::Real;
@@ -24,7 +24,7 @@ impl<T: Real> Named<T> for JournalFull<T> {
         load_n: Option<f64>,
         values: &[T],
         clock: Clock,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         let (bearing, load_n, parameters) = parts(bearing, load_n, values)?;
         JournalFull::new(bearing, load_n, &parameters, clock)
     }
@@ -33,7 +33,7 @@ impl<T: Real> Named<T> for JournalFull<T> {
 impl SteadyCurve for JournalFull<f64> {
     /// Returns the steady friction of the law without inertia, because inertia has no influence on
     /// a steady state, N.
-    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, Error> {
         self.film.steady_n(velocity_m_s)
     }
 }

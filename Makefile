@@ -26,7 +26,7 @@ $(shell rm -f $(BUILT))
 endif
 
 .PHONY: help venv quick demo docs figures generated test test-extended lint format bench counts bits bits-table fuzz miri sanitize supply faults mutation firmware \
-	sbom coverage licences publish-check wheel wheel-test reproducible lowest free-threaded clean
+	sbom coverage licences publish-check semver wheel wheel-test reproducible lowest free-threaded clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -49,6 +49,7 @@ help:
 	@echo "make sbom    what an installed jbf consists of, as CycloneDX, into target/sbom"
 	@echo "make licences  THIRD_PARTY.md: the texts of what is linked into a wheel"
 	@echo "make publish-check  packs every crate that is published, as the registry would"
+	@echo "make semver  the public items of the crates against the last release, or BASE=REVISION (cargo-semver-checks)"
 	@echo "make wheel   source archive, and the wheel from it, into dist"
 	@echo "make wheel-test  that wheel in a new environment: first diagnosis, tests against what is installed"
 	@echo "make reproducible  builds both again in another folder: the same bytes?"
@@ -242,6 +243,16 @@ publish-check:
 	$(PYTHON) release/licences.py --check
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
 		CARGO_TARGET_DIR="$$folder" cargo publish --dry-run --quiet --allow-dirty --workspace
+
+# The crates whose items docs/versions.md promises to keep, against the newest release on crates.io or,
+# with BASE=REVISION, against a commit of this repository.
+semver:
+	@if ! cargo semver-checks --version >/dev/null 2>&1; then \
+		echo "SKIPPED: cargo install --locked cargo-semver-checks"; exit 0; fi; \
+	if [ -z "$(BASE)" ] && ! found=$$(cargo info --quiet --registry crates-io jbf-core 2>&1); then \
+		echo "SKIPPED: no release to compare with ($${found##*error: }); BASE=REVISION names a commit"; \
+		exit 0; fi; \
+	cargo semver-checks --package jbf-core --package jbf-batch $(if $(BASE),--baseline-rev $(BASE))
 
 # The archive is packed, and the wheel built from it in an empty folder: nothing of this tree helps.
 wheel: $(MADE)

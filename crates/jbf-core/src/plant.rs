@@ -42,11 +42,15 @@ const LOST_RAD_S: f64 = 1e9;
 /// unnecessary.
 const LONGEST_STANDING_S: f64 = 0.02;
 
-/// Motor and shaft of a control loop.
+/// Motor and shaft of a control loop: `v' = -a v + b (u - F)`, with the voltage `u` and the friction
+/// `F` in volts.
+///
+/// For a drive with a torque controller, read N m for V: `a` is zero, `b` the inverse of the inertia,
+/// and `volts_per_n` 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Drive {
-    /// Damping `a`, 1/s.
+    /// Damping `a` without friction, 1/s, caused by the back-EMF of the motor.
     pub damping_1_s: f64,
     /// Input gain `b`, rad/s^2/V.
     pub input_rad_s2_v: f64,
@@ -70,7 +74,9 @@ impl Drive {
 
     /// Creates a drive from its damping a (1/s) and input gain b (rad/s^2/V).
     ///
-    /// The friction scale and the largest input are those of Cohn (1998) until they are set.
+    /// Set the friction scale and the largest input of your drive with
+    /// [`with_volts_per_n`](Self::with_volts_per_n) and [`with_limit_v`](Self::with_limit_v). Until
+    /// then they are those of Cohn (1998), 0.02826 V/N and 10 V.
     #[must_use]
     pub const fn new(damping_1_s: f64, input_rad_s2_v: f64) -> Self {
         Self {
@@ -93,11 +99,24 @@ impl Drive {
 
     /// Returns twice the speed that the largest input sustains without friction, rad/s.
     ///
-    /// A higher speed is attributed to a jump of the encoder.
+    /// An [`Encoder`](crate::encoder::Encoder) attributes a higher speed to a jump of the counter. The
+    /// speed is infinite for a drive without damping: give the encoder a limit of the machine instead.
     #[must_use]
     pub fn top_speed_rad_s(&self) -> f64 {
         2.0 * self.limit_v * self.input_rad_s2_v / self.damping_1_s
     }
+}
+
+/// Fraction of its speed that a drive without friction loses in a step, and the speed that it gains
+/// per volt, rad/s/V: the solution of `v' = -a v + b u` for a constant input.
+pub(crate) fn step_response(damping_1_s: f64, input_rad_s2_v: f64, step_s: f64) -> [f64; 2] {
+    let fall = -libm::expm1(-damping_1_s * step_s);
+    let gain = if damping_1_s > 0.0 {
+        input_rad_s2_v / damping_1_s * fall
+    } else {
+        input_rad_s2_v * step_s
+    };
+    [fall, gain]
 }
 
 /// Simulated shaft with a drive and a friction chain, with precomputed constants.
@@ -142,18 +161,19 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Plant<T, L, E> {
     /// Creates a plant that advances by `step_s`, with which the law must be stable.
     ///
     /// # Errors
-    /// Reports the number that is not positive and finite.
+    /// Reports the number that violates its rule: the damping must be zero or positive, `volts_per_n`
+    /// too, and the other numbers positive.
     pub fn new(chain: Chain<T, L, E>, drive: Drive, step_s: f64) -> Result<Self, Error> {
-        positive("damping_1_s", drive.damping_1_s)?;
+        not_negative("damping_1_s", drive.damping_1_s)?;
         positive("input_rad_s2_v", drive.input_rad_s2_v)?;
         positive("limit_v", drive.limit_v)?;
         positive("step_s", step_s)?;
         not_negative("volts_per_n", drive.volts_per_n)?;
-        let fall = -libm::expm1(-drive.damping_1_s * step_s);
+        let [fall, gain] = step_response(drive.damping_1_s, drive.input_rad_s2_v, step_s);
         Ok(Self {
             chain,
             keep: T::of(1.0 - fall),
-            gain: T::of(drive.input_rad_s2_v / drive.damping_1_s * fall),
+            gain: T::of(gain),
             volts_per_n: T::of(drive.volts_per_n),
             limit_v: T::of(drive.limit_v),
             step_s: T::of(step_s),

@@ -7,7 +7,7 @@ use common::constant_law::ConstantLaw;
 use common::{chain_round, law, newtons};
 use jbf_core::effect::{Effects, Info, Need, Rig};
 use jbf_core::law::{with_law, Law, Named, Visitor};
-use jbf_core::plant::Plant;
+use jbf_core::plant::{Drive, Plant};
 use jbf_core::{Bearing, Chain, Clock};
 
 const H: f64 = 0.001;
@@ -39,6 +39,20 @@ fn plant_without_friction_follows_the_exact_solution() {
         let t = f64::from(i) * H;
         let exact = 457.0 / 135.0 * 2.0 * -(-135.0 * t).exp_m1();
         assert!((state.speed_rad_s / exact - 1.0).abs() < 1e-6, "{t} s");
+    }
+}
+
+/// A drive without damping, such as one with a torque controller, accelerates uniformly.
+#[test]
+fn plant_without_damping_and_friction_accelerates_uniformly() {
+    let drive = Drive::new(0.0, 200.0);
+    let plant = Plant::new(chain(ConstantLaw(0.0)), drive, H).unwrap();
+    let mut state = plant.start(LOAD_N, 0.0);
+    for i in 1..=500 {
+        plant.step(&mut state, 0.5, LOAD_N);
+        let t = f64::from(i) * H;
+        assert!((state.speed_rad_s - 100.0 * t).abs() < 1e-9);
+        assert!((state.angle_rad - 50.0 * t * t).abs() < 1e-9);
     }
 }
 

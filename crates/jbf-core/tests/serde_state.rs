@@ -36,15 +36,15 @@ fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
 fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut other: C::State) {
     for i in 0..5_000_u32 {
         let t = f64::from(i) * DT_S;
-        // `Input` may get further fields, so it is filled in field by field.
-        let mut input = Input::default();
-        input.angle_rad = t.cos();
-        input.velocity_rad_s = -t.sin();
-        input.error = 0.1 * (3.0 * t).sin();
-        input.reference_rad_s = -t.sin();
-        input.reference_rad_s2 = -t.cos();
-        input.base_v = 0.5 * (2.0 * t).cos();
-        input.may_learn = true;
+        let input = Input {
+            angle_rad: t.cos(),
+            velocity_rad_s: -t.sin(),
+            error: 0.1 * (3.0 * t).sin(),
+            reference_rad_s: -t.sin(),
+            reference_rad_s2: -t.cos(),
+            base_v: 0.5 * (2.0 * t).cos(),
+            may_learn: true,
+        };
         let answers = [
             compensator.step(&mut one, &input),
             compensator.step(&mut other, &input),

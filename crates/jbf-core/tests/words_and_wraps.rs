@@ -151,8 +151,10 @@ fn viscous_friction_is_proportional_to_the_learned_gamma() {
             ..Learned::THESIS
         };
         let loop_ = bench::learning::<f64>(bench::Control::Velocity).resumed(learned);
-        let mut input = Input::default();
-        input.velocity_rad_s = velocity_rad_s;
+        let input = Input {
+            velocity_rad_s,
+            ..Input::default()
+        };
         loop_.step(&mut loop_.start(), &input).sum_v
     };
     for velocity in [0.5, 4.0, -4.0] {

@@ -1,7 +1,8 @@
 //! Friction model corrected by an observer, as proposed in chapter 7 of Cohn (1998).
 //!
-//! The model (the film, with the effects of a fit) predicts the friction. An observer of the whole
-//! plant estimates the remaining disturbance:
+//! The model, a law with its effects, predicts the friction: a `level` with the direction `dir` of
+//! the motion, and a `smooth` part. An observer of the plant estimates the remaining disturbance
+//! `d`, and a part `c` of it is learned as friction:
 //!
 //! ```text
 //! F_hat = (level + c) dir + smooth + d
@@ -9,6 +10,8 @@
 //! corrected by l (measured - predicted) from the angle alone, poles at -w, -w, -max(a, w)
 //! c' = mu d dir  (and d falls by as much: a disturbance that reverses with the motion is friction)
 //! ```
+//!
+//! Here `w` is [`Settings::bandwidth_rad_s`] and `mu` is [`Settings::learning_1_s`].
 //!
 //! `smooth` is evaluated at the start of the step, except for a viscous friction so steep that the
 //! shaft would reverse within the step. With the slope s of this friction (V s/rad) the step is
@@ -43,6 +46,7 @@ use super::model::FrictionModel;
 use super::{Compensator, Input, Output};
 use crate::error::{check, Error};
 use crate::friction::Friction;
+use crate::plant::step_response;
 use crate::real::Real;
 use poles::poles;
 
@@ -118,10 +122,15 @@ impl<T: Real, M: FrictionModel<T>> Observed<T, M> {
     /// Reports the name of the setting that violates its rule.
     pub fn new(model: M, s: &Settings) -> Result<Self, Error> {
         s.check()?;
-        let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
-        let gain = s.input_rad_s2_v / s.damping_1_s * fall;
+        let [fall, gain] = step_response(s.damping_1_s, s.input_rad_s2_v, s.dt_s);
+        // Without damping, the observer limits the speed that a wrong friction estimate causes.
+        let decay_1_s = if s.damping_1_s > 0.0 {
+            s.damping_1_s
+        } else {
+            s.bandwidth_rad_s
+        };
         let wrong_rad_s =
-            (s.level_limit_v + s.rest_limit_v) * s.input_rad_s2_v / s.damping_1_s + s.slow_rad_s;
+            (s.level_limit_v + s.rest_limit_v) * s.input_rad_s2_v / decay_1_s + s.slow_rad_s;
         let doubtful_rad = FINDING_OUT * wrong_rad_s / s.bandwidth_rad_s;
         let correct = poles(
             1.0 - fall,

@@ -5,12 +5,17 @@ use crate::control_law::BaseLaw;
 use crate::error::{check, finite, not_negative, positive, Error};
 use crate::plant::Drive;
 
-/// Settings of the compensator [`super::Observed`], in SI units; `jbf control tune` computes them
-/// from a model.
+/// Settings of the compensator [`super::Observed`], in SI units.
+///
+/// `jbf control tune` computes them from a model and the resolution of the encoder. Its rules are
+/// good first values: a bandwidth of 0.12 divided by the time step, or less if the output is noisy;
+/// a `learning_1_s` of a thirtieth of the bandwidth; a `level_limit_v` of the friction level, and a
+/// `rest_limit_v` of the friction level and a tenth of the largest voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Damping `a` of the plant, 1/s.
+    /// Damping `a` of the plant without the friction of the model, 1/s; zero for a drive with a
+    /// torque controller.
     pub damping_1_s: f64,
     /// Input gain `b` of the plant, rad/s^2/V.
     pub input_rad_s2_v: f64,
@@ -105,7 +110,7 @@ impl Settings {
     }
 
     pub(super) fn check(&self) -> Result<(), Error> {
-        positive("damping_1_s", self.damping_1_s)?;
+        not_negative("damping_1_s", self.damping_1_s)?;
         positive("input_rad_s2_v", self.input_rad_s2_v)?;
         positive("bandwidth_rad_s", self.bandwidth_rad_s)?;
         positive("slow_rad_s", self.slow_rad_s)?;
@@ -158,7 +163,7 @@ mod tests {
         assert!(PLAIN.check().is_ok());
         for (bad, name) in [
             (
-                Settings::new(&Drive::new(0.0, 1.0), 60.0, 0.05, 0.002),
+                Settings::new(&Drive::new(-1.0, 1.0), 60.0, 0.05, 0.002),
                 "damping_1_s",
             ),
             (

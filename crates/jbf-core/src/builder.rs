@@ -7,7 +7,7 @@
 macro_rules! with_fields {
     ($($method:ident => $field:ident: $t:ty),* $(,)?) => {
         $(
-            #[doc = concat!("The same with another `", stringify!($field), "`.")]
+            #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
             #[must_use]
             pub const fn $method(mut self, $field: $t) -> Self {
                 self.$field = $field;

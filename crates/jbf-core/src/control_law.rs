@@ -1,18 +1,18 @@
 //! Control laws before friction compensation, and their gains, from section 6.3 of Cohn (1998).
-//!
-//! ```text
-//! position   u = -k1 (x - x_ref) - k2 v_hat         s^2 + (a + b k2) s + b k1
-//! velocity   u = -g (v_hat - v_ref) + C v_ref       g b = 457 1/s, C = a/b
-//! ```
-//!
-//! For the drive of Cohn (1998), [`Drive::THESIS`], the gains are exactly those printed there. For
-//! any other drive, the gains result in the same poles of the compensated plant.
 
 use crate::plant::Drive;
 use crate::real::Real;
 use crate::reference::Target;
 
-/// Control law before friction compensation.
+/// Control law before friction compensation, from section 6.3 of Cohn (1998).
+///
+/// ```text
+/// position   u = -k1 (x - x_ref) - k2 v_hat         s^2 + (a + b k2) s + b k1
+/// velocity   u = -g (v_hat - v_ref) + C v_ref       g b = 457 1/s, C = a/b
+/// ```
+///
+/// For the drive of Cohn (1998), [`Drive::THESIS`], the gains are exactly those printed there. For
+/// any other drive, the gains result in the same poles of the compensated plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BaseLaw<T> {
@@ -87,8 +87,7 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// Returns both gains in the order of the equations of this module: `k1` and `k2`, or `g` and
-    /// `C`.
+    /// Returns both gains: `k1` and `k2`, or `g` and `C`.
     #[must_use]
     pub fn gains(&self) -> [f64; 2] {
         match *self {

@@ -68,7 +68,8 @@ macro_rules! described {
     )*]) => {
         #[doc = concat!("Parameters of [`", stringify!($Owner), "`].")]
         ///
-        /// The default of a parameter is the value without effect, or otherwise its usual value.
+        /// The default of a parameter is its finite value without effect, or otherwise the first of its
+        /// usual values.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters<T> {
             $(

@@ -1,9 +1,10 @@
-//! Motion imposed on the bearing at one instant.
+//! Motion at one instant.
 
 use crate::real::Real;
 
-/// Imposed motion at one instant; create it from [`Motion::at_rest`] with the quantities that differ
-/// from rest.
+/// Motion at one instant, the input of a [`Chain`](crate::Chain).
+///
+/// Create it from [`Motion::at_rest`] with the quantities that differ from rest:
 ///
 /// ```
 /// use jbf_core::Motion;
@@ -15,11 +16,11 @@ use crate::real::Real;
 pub struct Motion<T> {
     /// Time since the start of the run, s.
     pub time_s: T,
-    /// Surface speed of the shaft, signed, m/s.
+    /// Sliding speed, signed, m/s; rad/s where the friction is a torque.
     pub velocity_m_s: T,
-    /// Rate of change of the surface speed, m/s^2.
+    /// Rate of change of the sliding speed, m/s^2.
     pub acceleration_m_s2: T,
-    /// Shaft angle, unwrapped, rad.
+    /// Shaft angle, unwrapped, rad; the position (m) of a linear axis.
     pub angle_rad: T,
     /// Angle of the weight minus the shaft angle, rad.
     ///
@@ -127,7 +128,9 @@ pub(crate) fn sag<T: Real>(share: T) -> T {
     T::of(0.5) * share * (T::ONE - share)
 }
 
-/// Motion of the journal, the output of the drive.
+/// Motion of the journal, the surface at which the friction acts; the output of the drive.
+///
+/// It equals the commanded [`Motion`] unless the drive is compliant or has backlash.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JournalMotion<T> {

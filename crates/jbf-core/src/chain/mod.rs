@@ -170,7 +170,7 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         sliding.smooth * load_n + other_n(&moving) - other_n(&still)
     }
 
-    /// Returns the state at the first sample of a run.
+    /// Returns the state at the first sample of a run; `&Motion::default()` for a start at rest.
     pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, E> {
         let journal = JournalMotion::from(motion);
         let mut state = State {
@@ -200,8 +200,10 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         state
     }
 
-    /// Advances the state to the motion `to`, `dt_s` later, and returns the reading of the
-    /// instrument there, N.
+    /// Advances the state to the motion `to`, `dt_s` later, and returns the force there, N, as the
+    /// instrument measures it.
+    ///
+    /// Without effects of the instrument, this is the friction force of one bearing.
     ///
     /// A step shorter than 1e-12 s and a sample that is not finite do not change the
     /// state. A single invalid sample would otherwise remain in the state of a filter forever.
@@ -241,8 +243,8 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         state.reading_n
     }
 
-    /// Advances the state by `dt_s` to a speed (m/s, signed) and returns the reading of the
-    /// instrument there, N.
+    /// Advances the state by `dt_s` to a speed (m/s, signed) and returns the force there, N, as
+    /// [`Chain::step`].
     ///
     /// The acceleration and the angle follow from the speed, which changes linearly in the step. Load
     /// and temperature remain those of the last sample.

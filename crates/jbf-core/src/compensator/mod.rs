@@ -19,8 +19,10 @@
 //! The output is called a voltage (names that end in `_v`), as for a motor with a voltage amplifier:
 //! `v' = -a v + b (u - F)`. For a drive with a torque controller, read N m for V. The input gain `b`
 //! is then the inverse of the inertia and the damping `a` is zero, because the friction model
-//! contains the viscous friction. One newton at a radius of 1 m is 1 N m: `volts_per_n` is 1. The
-//! constructors of friction models require a load, which laws in newtons do not use.
+//! contains the viscous friction. One newton at a radius of 1 m is 1 N m: `volts_per_n` is 1. For a
+//! linear axis, read m for rad, N for V, and the mass for the inertia.
+//!
+//! The constructors of friction models require a load, which laws in newtons do not use.
 //!
 //! # In a loop of your own
 //! [`Controller`](crate::controller::Controller) is a complete loop, from the counter to the

@@ -38,17 +38,17 @@ pub trait FrictionModel<T: Real> {
 
 /// Friction model that is a law without effects, the smallest and fastest model.
 ///
-/// A bristle of the law is assumed to slide at once.
+/// The deflection of a bristle before it slides is neglected; [`ChainModel`] includes it.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct LawModel<T, L> {
     /// The friction law.
     pub law: L,
-    /// Journal radius, m.
+    /// Journal radius, m; 1 for a shaft whose friction is a torque.
     pub radius_m: T,
     /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: T,
-    /// Load on one bearing, N.
+    /// Load on one bearing, N; not used by laws in newtons.
     pub load_n: T,
 }
 
@@ -118,7 +118,7 @@ pub struct ChainModel<T: Real, L, E = Effects<T>> {
     pub chain: Chain<T, L, E>,
     /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: T,
-    /// Load on one bearing, N.
+    /// Load on one bearing, N; not used by laws in newtons.
     pub load_n: T,
 }
 

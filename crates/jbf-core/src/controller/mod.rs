@@ -5,31 +5,29 @@
 //! encoder is considered faulty, or after the output has been at its limit for longer than
 //! `patience_s`, nothing is learned. The control law then acts alone ([`Status::FALLBACK`]).
 //!
-//! The example is a loop of 2 ms with the film model of Table 4.2, corrected by an observer, in
-//! `f32` as on a microcontroller:
+//! The example is a loop of 2 ms with a LuGre model, corrected by an observer, in `f32` as on a
+//! microcontroller:
 //!
 //! ```
 //! use jbf_core::compensator::{observed::Settings, LawModel, Observed};
 //! use jbf_core::controller::{BaseLaw, Controller, Limits, Status};
 //! use jbf_core::encoder::Encoder;
-//! use jbf_core::law::journal::{Journal, Parameters};
+//! use jbf_core::law::lugre::{LuGre, Parameters};
 //! use jbf_core::observer::VelocityObserver;
 //! use jbf_core::plant::Drive;
 //! use jbf_core::reference::Target;
-//! use jbf_core::{Bearing, Clock};
 //!
 //! # fn main() -> Result<(), jbf_core::Error> {
 //! const DT_S: f64 = 0.002;
-//! let film = Parameters { f_m: 0.26_f32, u_tr_m_s: 0.06, k0: 7.5e5, gamma: 33.0 };
-//! let journal = Journal::new(&Bearing::THESIS, 104.0, &film, Clock::Journal)?;
-//! let model = LawModel::new(journal, Bearing::THESIS.radius_m, Drive::THESIS.volts_per_n, 104.0);
-//! let drive = Drive::THESIS;
+//! // v' = -135 v + 457 u without friction; 0.05 V are needed against a friction of 1 N m.
+//! let drive = Drive::new(135.0, 457.0).with_volts_per_n(0.05).with_limit_v(10.0);
+//! let friction = LuGre::new(Parameters { f_c: 4.0_f32, f_s: 6.0, ..Parameters::default() })?;
+//! let model = LawModel::new(friction, 1.0, drive.volts_per_n, 1.0);
 //! let law = BaseLaw::velocity(&drive);
-//! // What `jbf control tune model.toml` prints.
 //! let settings = Settings::new(&drive, 60.0, 0.05, DT_S)
 //!     .with_learning_1_s(2.0)
-//!     .with_level_limit_v(0.76)
-//!     .with_rest_limit_v(1.76)
+//!     .with_level_limit_v(0.3)
+//!     .with_rest_limit_v(1.3)
 //!     .with_control_law(&law, 30.0);
 //! let controller = Controller::new(
 //!     Encoder::new(2387.3, 16, drive.top_speed_rad_s(), DT_S)?,

@@ -1,18 +1,28 @@
-//! Effects between the commanded motion and the recorded friction, one per file.
+//! Effects that a machine and its sensors add to a friction law, one per file.
 //!
-//! Each effect acts at one stage of the signal chain:
+//! Each effect acts at one stage of the signal chain, from the commanded motion to the measured
+//! force:
 //!
 //! ```text
 //! commanded motion -> drive -> lubricant -> load -> film (the law)
 //!                  -> contact -> transmission -> bristle -> other -> instrument
 //! ```
 //!
-//! An effect is independent of the other stages. Each module has a type for the effect, and the
-//! struct `Parameters` with which its `new` creates it. [`Effects::set`] creates an effect by name
-//! from a list of values.
+//! The *journal* is the surface at which the friction acts: a shaft in its bearing, or a slide. Its
+//! motion equals the commanded motion unless the drive is compliant or has backlash.
 //!
-//! To add an effect, write its file with `described!` and [`Effect`], declare the module below, and
-//! add the effect to the line of its stage in `catalogue.rs`.
+//! Each module has the type of an effect, and the struct `Parameters` from which its `new` creates the
+//! effect. [`Chain::with`](crate::Chain::with) adds it to a law.
+//!
+//! An effect that is not in this list implements [`Effect`] with the methods of its stage;
+//! [`examples/user_effect.rs`] is a complete one. The other items of this module serve programs that
+//! select effects by name at run time: [`Effects::set`] creates an effect from a list of values, and
+//! [`CATALOGUE`] describes the effects and their parameters.
+//!
+//! [`examples/user_effect.rs`]: https://github.com/jbf-friction/jbf/blob/main/crates/jbf-core/examples/user_effect.rs
+
+// To add an effect, write its file with `described!` and `Effect`, declare the module below, and add
+// the effect to the line of its stage in `catalogue.rs`.
 
 pub mod backlash;
 pub mod cogging;

@@ -1,9 +1,10 @@
 //! Temperature-dependent viscous friction: viscous friction multiplied by `exp(B/(T - C) - B/(T_0 -
 //! C))`, T the recorded temperature.
 //!
-//! Source: Vogel (1921), for the viscosity of an oil or of the base oil of a grease; see
-//! `vogel.rs`. Bittencourt & Gunnarsson (2012) find that the viscous friction of a robot joint
-//! falls exponentially with the temperature; Simoni et al. (2019) use a polynomial.
+//! Source: Vogel (1921), for the viscosity of an oil or of the base oil of a grease; the constant
+//! `C = -95` is valid for mineral oils of every grade (Crouch & Cameron 1961). Bittencourt &
+//! Gunnarsson (2012) find that the viscous friction of a robot joint falls exponentially with the
+//! temperature; Simoni et al. (2019) use a polynomial.
 
 use super::registry::named_effect;
 use super::vogel::Vogel;

@@ -1,12 +1,12 @@
 //! Viscosity of the oil as a function of the recorded temperature: `Ub -> Ub m`, `t -> t/m`, `m =
 //! exp(B/(T - C) - B/(T_0 - C))`.
 //!
-//! Source: Vogel (1921); see `vogel.rs` for the relation and the constant C. The transition speed
-//! is inversely proportional to the viscosity (mu U_tr = const), so Fb and eps_tr stay constant, as
-//! in `thermal_thinning`, whose temperature is not recorded. The rate of the film dynamics, U_tr/R,
-//! is proportional to 1/mu: thin oil is squeezed out faster. With the time scale
-//! [`crate::Clock::Journal`], a change of the oil is therefore equivalent to a change of the
-//! temperature, and one model describes runs with several oils.
+//! Source: Vogel (1921); the constant `C = -95` is valid for mineral oils of every grade (Crouch &
+//! Cameron 1961). The transition speed is inversely proportional to the viscosity (mu U_tr =
+//! const), so Fb and eps_tr stay constant, as in `thermal_thinning`, whose temperature is not
+//! recorded. The rate of the film dynamics, U_tr/R, is proportional to 1/mu: thin oil is squeezed
+//! out faster. With the time scale [`crate::Clock::Journal`], a change of the oil is therefore
+//! equivalent to a change of the temperature, and one model describes runs with several oils.
 
 use super::registry::named_effect;
 use super::vogel::Vogel;

@@ -1,14 +1,19 @@
 //! Friction laws, one per file.
 //!
 //! A law computes friction from the motion. Contributions of the machine are effects, see
-//! [`crate::effect`]. Each module has a type for the law, and the struct `Parameters` with which its
-//! `new` creates it. [`with_law`] creates a law by name from a list of values.
+//! [`crate::effect`]. Each module has the type of a law, and the struct `Parameters` from which its
+//! `new` creates the law. A [`Chain`](crate::Chain) runs a law.
 //!
-//! All laws except those of a journal bearing return newtons and do not depend on the load: they use
-//! a load of 1 N, so that the coefficient equals the force.
+//! All laws except those of a journal bearing return newtons and do not depend on the load.
 //!
-//! To add a law, write its file with `described!`, [`Law`] and [`SteadyCurve`], declare the module
-//! below, and add the law to `laws!`.
+//! A law that is not in this list implements [`Law`]; [`examples/user_law.rs`] is a complete one. The
+//! other items of this module serve programs that select a law by name at run time: [`with_law`]
+//! creates it from a list of values, and [`CATALOGUE`] describes the laws and their parameters.
+//!
+//! [`examples/user_law.rs`]: https://github.com/jbf-friction/jbf/blob/main/crates/jbf-core/examples/user_law.rs
+
+// To add a law, write its file with `described!`, `Law` and `SteadyCurve`, declare the module below,
+// and add the law to `laws!`.
 
 pub mod coulomb;
 pub mod dahl;
@@ -39,7 +44,10 @@ use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::real::Real;
 
-/// Friction law with its parameters; the variables are in `State`.
+/// Friction law: the type contains the parameters, and `State` the variables.
+///
+/// [`Law::friction`] returns a coefficient, which the chain multiplies by [`Law::pressed_n`]. A law in
+/// newtons returns 1 N there, so that its coefficient is the force.
 pub trait Law<T: Real> {
     /// State of the law in the course of a run.
     type State: Copy + Send + 'static;

@@ -22,6 +22,10 @@ use crate::real::Real;
 const FASTEST_RAD_S: f64 = 1e4;
 
 /// Coulomb friction observer with its gains.
+///
+/// At each sample, evaluate [`power`](Self::power) at the speed, take the estimate from
+/// [`level_v`](Self::level_v), and update it with [`learn`](Self::learn).
+/// [`compensator::Coulomb`](crate::compensator::Coulomb) makes these calls.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombObserver<T> {
     gain: T,
@@ -52,7 +56,8 @@ pub struct Power<T> {
 impl<T: Real> CoulombObserver<T> {
     /// Creates a Coulomb friction observer.
     ///
-    /// - `gain`: `k_F`, in the units of Cohn (1998), V per (rad/s)^p.
+    /// - `gain`: `k_F`, in the units of Cohn (1998), V per (rad/s)^p. With p = 1 the estimate follows
+    ///   the friction with a time constant of `1/(k_F b)`.
     /// - `exponent`: `p`.
     /// - `input_rad_s2_v`: input gain `b` of the plant, rad/s^2/V.
     /// - `limit_v`: largest friction level that may be learned, V.

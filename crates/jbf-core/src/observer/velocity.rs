@@ -1,12 +1,4 @@
-//! Velocity observer, equation (6.2) of Cohn (1998), without or with feedforward of the input of
-//! the plant:
-//!
-//! ```text
-//! v_hat = z + k x,   z' = -k v_hat                    (plain)
-//!                    z' = -(a + k) v_hat + b u        (fed forward, Appendix E)
-//! ```
-//!
-//! Source: Tafazoli, de Silva & Lawrence (1995); Cohn (1998), (6.2), Appendices D and E.
+//! Velocity observer, equation (6.2) of Cohn (1998).
 //!
 //! The state is v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. This is equivalent to the
 //! Euler step in Cohn (1998), and neither the angle nor its rounding error grows over hours.
@@ -14,7 +6,33 @@
 use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
 
-/// Velocity observer with its gains; the state is the estimated speed, rad/s.
+/// Velocity observer, equation (6.2) of Cohn (1998), without or with feedforward of the input of the
+/// plant; the state is the estimated speed `v_hat`, rad/s.
+///
+/// ```text
+/// v_hat = z + k x,   z' = -k v_hat                    (without feedforward)
+///                    z' = -(a + k) v_hat + b u        (with feedforward)
+/// ```
+///
+/// At each sample, call [`correct`](Self::correct), the control law, and
+/// [`predict`](Self::predict):
+///
+/// ```
+/// use jbf_core::observer::VelocityObserver;
+///
+/// let dt_s = 1e-3;
+/// let observer = VelocityObserver::new(100.0, dt_s)?;
+/// let mut velocity_rad_s = 0.0;
+/// for _ in 0..200 {
+///     velocity_rad_s = observer.correct(velocity_rad_s, 2.0 * dt_s); // rotation since the last sample
+///     // The control law computes the input u from `velocity_rad_s` here.
+///     velocity_rad_s = observer.predict(velocity_rad_s, 0.0);
+/// }
+/// assert!((velocity_rad_s - 2.0_f64).abs() < 0.3);
+/// # Ok::<(), jbf_core::Error>(())
+/// ```
+///
+/// Source: Tafazoli, de Silva & Lawrence (1995); Cohn (1998), (6.2), Appendices D and E.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObserver<T> {
     gain_1_s: T,

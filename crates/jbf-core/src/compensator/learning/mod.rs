@@ -1,4 +1,4 @@
-//! Learning friction compensator of Cohn (1998).
+//! Learning friction compensator of Cohn (1998) for a journal bearing.
 //!
 //! A film model in the control loop predicts the friction. An integral rule adapts two parameters
 //! of the film to the control error: K0 in mixed lubrication and gamma in full film.
@@ -46,7 +46,9 @@ impl Learned<f64> {
     };
 }
 
-/// Learning friction compensator of Cohn (1998).
+/// Learning friction compensator of Cohn (1998) for a journal bearing.
+///
+/// For any other law, [`Observed`](super::Observed) learns the friction level.
 #[derive(Clone, Copy, Debug)]
 pub struct Learning<T> {
     law: Journal<T>,

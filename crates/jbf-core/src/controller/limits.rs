@@ -25,7 +25,8 @@ pub struct Limits {
 impl Limits {
     /// Creates limits for a loop in which only a jump of the counter is a fault, as in Cohn (1998).
     ///
-    /// The voltage that moves the shaft and the time limit must be set separately.
+    /// Set [`moving_v`](Self::moving_v) and [`patience_s`](Self::patience_s) as well, so that the loop
+    /// detects a counter that does not change and an output that remains saturated.
     #[must_use]
     pub const fn new(output_v: f64) -> Self {
         Self {

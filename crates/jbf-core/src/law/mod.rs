@@ -78,9 +78,11 @@ pub trait Law<T: Real> {
     ///
     /// The indices are given only if friction depends on the film through [`Law::film`] alone; see
     /// `jbf_batch::film_path`.
+    #[doc(hidden)]
     const FILM_PARAMETERS: Option<[usize; 2]> = None;
 
     /// Returns the state of the film that determines friction.
+    #[doc(hidden)]
     #[inline(always)]
     fn film(&self, state: &Self::State) -> T {
         let _ = state;
@@ -88,6 +90,7 @@ pub trait Law<T: Real> {
     }
 
     /// Sets the state of the film from a value of [`Law::film`].
+    #[doc(hidden)]
     #[inline(always)]
     fn put_film(&self, state: &mut Self::State, film: T) {
         let _ = (state, film);

@@ -8,6 +8,7 @@ computed once and cached.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -192,7 +193,7 @@ class Candidates:
             self.residual = residual = RichestResidual.of(directions, thinned.campaign.samples)
             level = self._level_given(present)
             if residual is not None:
-                directions = [residual.counted(d) for d in directions]
+                directions = [replace(d, share=max(d.share, residual.share)) for d in directions]
             level = calibrated(level, directions, residual)
             level = with_decoys(level, directions, self.campaign.samples.count)
             self._levels[key] = (level, residual)

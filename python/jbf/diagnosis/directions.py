@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -35,19 +35,27 @@ class Directions:
         shape (n, k).
     innovations
         Innovations of the model without the effect, scaled to unit variance, shape (n,).
-    counted
-        Factors on the squared scores, below one in autocorrelated noise, shape (k,).
+    inflation
+        Ratio of the long-run variance of each score to its variance in white noise, shape (k,).
     blocks
         First row of each block of the wild bootstrap.
     ends
         First row of each run but the first.
+    share
+        Ratio of the effective number of samples to the number of samples.
     """
 
     ways: Array
     innovations: Array
-    counted: Array
+    inflation: Array
     blocks: Places
     ends: Places
+    share: float = 1.0
+
+    @property
+    def counted(self) -> Array:
+        """Factors on the squared scores, below one in autocorrelated noise, shape (k,)."""
+        return np.minimum(self.share, 1.0 / self.inflation)
 
     @classmethod
     def of(
@@ -77,12 +85,11 @@ class Directions:
         ends = _ends(samples)
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
         parts, settings = np.split(unit, ends), samples.settings.variance
-        inflations = [
+        inflation = [
             significant_inflation(np.split(way, ends), parts, samples.steps_s, settings)
             for way in ways.T
         ]
-        counted = np.array([min(share, 1.0 / m) for m in inflations])
-        return cls(ways, unit, counted, blocks_of(samples, share), ends)
+        return cls(ways, unit, np.array(inflation), blocks_of(samples, share), ends, share)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
         """Sums of the scores of given innovations over each block, shape (blocks, k).
@@ -124,15 +131,12 @@ class RichestResidual:
     Attributes
     ----------
     innovations
-        Innovations of unit variance, one array per run.
-    samples
-        The samples of the innovations.
+        Innovations of unit variance, all runs in one array, shape (n,).
     share
         Effective number of independent samples divided by their number, 0 to 1.
     """
 
-    innovations: tuple[Array, ...]
-    samples: Samples
+    innovations: Array
     share: float
 
     @classmethod
@@ -152,31 +156,8 @@ class RichestResidual:
         every = np.column_stack([d.ways for d in tested])
         noise = tested[0].innovations - _explained(every, tested[0].innovations)
         noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
-        innovations = tuple(np.split(noise, tested[0].ends))
-        share = independent_share(innovations, samples.steps_s, samples.settings.noise)
-        return cls(innovations, samples, share)
-
-    def share_of(self, differences: Sequence[Array]) -> float | None:
-        """Share of independent samples in a gain; None if it refers to other samples.
-
-        Parameters
-        ----------
-        differences
-            Differences of the innovations of two models, one array per run.
-        """
-        if [len(d) for d in differences] != [len(e) for e in self.innovations]:
-            return None
-        samples = self.samples
-        inflation = significant_inflation(
-            differences, self.innovations, samples.steps_s, samples.settings.variance
-        )
-        return min(self.share, 1.0 / inflation)
-
-    def counted(self, directions: Directions) -> Directions:
-        """Return score directions with the share of independent samples in this residual."""
-        parts = [np.split(way, directions.ends) for way in directions.ways.T]
-        shares = [self.share_of(part) or 0.0 for part in parts]
-        return replace(directions, counted=np.maximum(directions.counted, shares))
+        parts = np.split(noise, tested[0].ends)
+        return cls(noise, independent_share(parts, samples.steps_s, samples.settings.noise))
 
 
 def _explained(ways: Array, target: Array) -> Array:

@@ -35,7 +35,7 @@ def evidence(
     """Log-likelihood gain of a richer model over a simpler one, less the acceptance threshold.
 
     The effective number of samples is smaller where both the residual of the richer model and that
-    of the richest one (`RichestResidual`) are correlated.
+    of the richest one (`RichestResidual`) are correlated, or the score.
     An effect with its parameters at the null has no positive evidence: its gain is due to the
     search.
 
@@ -49,10 +49,8 @@ def evidence(
     if gain > 0.0 and _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
         gain = 0.0
     if gain > 0.0:
-        residual = candidates.residual
-        share_of = (lambda differences: None) if residual is None else residual.share_of
-        whole = candidates.independent_share(richer)
-        gain *= whole if anywhere else share_of_gain(richer, simpler, share_of)
+        share = candidates.independent_share(richer)
+        gain *= share if anywhere else share_of_gain(richer, simpler, share)
     if _adds_idle_effect(candidates, richer, simpler):
         gain = min(gain, 0.0)
     price = price_of(candidates, richer.free - simpler.free)

@@ -231,14 +231,13 @@ def calibrated(
     tested = largest_common_group([d for d in directions if d.ways.size])
     if not tested or residual is None:
         return level
-    noise = np.concatenate(residual.innovations)
     # The models may have residuals of different autocorrelation: use the fewest blocks.
     blocks = min((d.blocks for d in tested), key=len)
     random = np.random.default_rng(len(blocks))
     signs = random.integers(0, 2, (DRAWS, len(blocks)), dtype=np.int8).astype(np.float32)
     signs = 2.0 * signs - np.float32(1.0)
     # Use one matrix product for all candidates, which reads the signs from memory once.
-    columns = np.column_stack([one.by_block(noise, blocks) for one in tested])
+    columns = np.column_stack([one.by_block(residual.innovations, blocks) for one in tested])
     scores = (signs @ columns.astype(np.float32)).astype(np.float64)
     ends = np.cumsum([one.ways.shape[1] for one in tested])
     least: Array = np.ones(DRAWS)

@@ -6,7 +6,7 @@ step is made.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -78,34 +78,22 @@ def effective_share(solution: Solution) -> float:
     return _shares[solution]
 
 
-def share_of_gain(
-    richer: Solution,
-    simpler: Solution,
-    share_of: Callable[[Sequence[Array]], float | None] = lambda differences: None,
-) -> float:
+def share_of_gain(richer: Solution, simpler: Solution, share: float) -> float:
     """Factor, at most one, that corrects a log-likelihood gain for correlated innovations.
 
-    The factor is the smaller of two estimates. One is computed from all autocorrelations of the
-    innovations of the richer solution, the other from the long-run variance of the score in the
-    direction in which the two solutions differ.
-
-    Parameters
-    ----------
-    share_of
-        The same factor for another estimate of the noise, from the differences of the innovations;
-        the larger one is returned.
+    The factor is the smaller of two estimates. One is the share of independent samples, `share`,
+    the other follows from the long-run variance of the score in the direction in which the two
+    solutions differ.
     """
     samples = common_samples(richer.samples, simpler.samples)
     pairs = _innovation_pairs(richer, simpler, samples)
-    differences = [e_simpler - e_richer for e_richer, e_simpler in pairs]
     inflation = significant_inflation(
-        differences,
+        [e_simpler - e_richer for e_richer, e_simpler in pairs],
         [e_richer for e_richer, _ in pairs],
         samples.steps_s,
         samples.settings.variance,
     )
-    own = min(effective_share(richer), 1.0 / inflation)
-    return max(own, share_of(differences) or 0.0)
+    return min(share, 1.0 / inflation)
 
 
 def robust_gain(richer: Solution, simpler: Solution) -> float:

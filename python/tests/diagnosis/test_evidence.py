@@ -135,7 +135,7 @@ def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -
     gain, price = likelihood_gain(rich, simple), price_of(candidates, 1)
     found = evidence(candidates, rich, simple)
     anywhere = evidence(candidates, rich, simple, anywhere=True)
-    assert found == pytest.approx(gain * share_of_gain(rich, simple) - price)
+    assert found == pytest.approx(gain * share_of_gain(rich, simple, effective_share(rich)) - price)
     assert anywhere == pytest.approx(gain * effective_share(rich) - price)
     assert found < 0.0 < anywhere <= gain - price
     assert evidence(candidates, simple, rich) == pytest.approx(-gain - price_of(candidates, -1))

@@ -179,8 +179,9 @@ def test_counted_share_of_a_likelihood_gain_is_reduced_if_residuals_are_correlat
     slow = np.repeat(white(5, 200), 10)
     for noise, low, high in ((white(4, 2000), 0.8, 1.0), (slow, 0.03, 0.25)):
         after, before = solution_of([noise], samples), solution_of([noise + wave], samples)
-        assert low <= likelihood.share_of_gain(after, before) <= high
-        assert likelihood.share_of_gain(after, before) <= likelihood.effective_share(after)
+        share = likelihood.effective_share(after)
+        assert low <= likelihood.share_of_gain(after, before, share) <= high
+        assert likelihood.share_of_gain(after, before, share) <= share
 
 
 def test_counted_share_of_a_likelihood_gain_is_reduced_at_samples_with_larger_noise() -> None:
@@ -190,7 +191,10 @@ def test_counted_share_of_a_likelihood_gain_is_reduced_at_samples_with_larger_no
     after = solution_of([noise], samples)
     sides = np.where(np.arange(4000) % 2, 1.0, -1.0)
     others = (solution_of([noise + 0.1 * d], samples) for d in (here, sides))
-    local, even = (likelihood.share_of_gain(after, before) for before in others)
+    local, even = (
+        likelihood.share_of_gain(after, before, likelihood.effective_share(after))
+        for before in others
+    )
     assert likelihood.effective_share(after) > 0.9
     assert local == pytest.approx(float(np.mean(noise**2)) / 100.0, rel=0.35)
     assert even > 0.75

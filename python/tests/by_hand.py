@@ -182,7 +182,7 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         before=before,
         after=after if has_effect else before,
         elapsed_s=12.5,
-        level=Level.shared(DEFAULT, 12, 2000.0, 0.1),
+        level=Level.in_white_noise(DEFAULT, 12, 2000.0, 0.1),
         not_tried={"position_ripple": "not every run has the shaft's angle"},
         not_detectable=("backlash",) if verdict == "adequate" else (),
     )

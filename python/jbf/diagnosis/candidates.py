@@ -58,7 +58,7 @@ class Candidates:
     """Campaign with a base law, the effects that may be added to it, and every fit made so far.
 
     `clock` defines the time constant of the film (`journal` or `thesis`). The solutions of
-    `before`, of an earlier form of the campaign, are starting values.
+    `earlier`, of an earlier form of the campaign, are starting values.
     """
 
     def __init__(
@@ -68,29 +68,31 @@ class Candidates:
         clock: Clock,
         policy: Policy = DEFAULT,
         progress: Progress | None = None,
-        before: Candidates | None = None,
+        earlier: Candidates | None = None,
     ) -> None:
         self.campaign, self.law, self.clock = campaign, law, clock
-        self.before = before
+        self.earlier = earlier
         self.policy, self.progress = policy, progress
-        self.reached: Reached = Reached() if before is None else before.reached
+        self.reached: Reached = Reached() if earlier is None else earlier.reached
         self._fitted: dict[frozenset[str], Fitted] = {}
         self._level: Level | None = None
         self._levels: dict[frozenset[str], tuple[Level, RichestResidual | None]] = {}
         self.residual: RichestResidual | None = None
         """Residual of the last calibrated model without all that candidates can explain."""
 
-    def of(self, campaign: Campaign, motion_of: Iterable[str] | None = None) -> Candidates:
+    def with_campaign(
+        self, campaign: Campaign, motion_effects: Iterable[str] | None = None
+    ) -> Candidates:
         """Return the candidates of a changed campaign; the fits start from present solutions.
 
-        `motion_of` has the effects with which new errors of the motion were estimated.
+        `motion_effects` has the effects with which new errors of the motion were estimated.
         """
-        self.before = None
+        self.earlier = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
         # Valid until the level is calibrated for a model of the new campaign.
         again._level = self._level
-        if motion_of is not None:
-            again.fitted(motion_of).motion_known = True
+        if motion_effects is not None:
+            again.fitted(motion_effects).motion_estimated = True
         return again
 
     # ---- which effects ----------------------------------------------------------------------
@@ -180,7 +182,7 @@ class Candidates:
     def level(self) -> Level:
         """Acceptance threshold for the gain of an effect; before calibration that of the law."""
         if self._level is None:
-            self._level = self._level_given(())
+            self._level = self._white_noise_level(())
         return self._level
 
     def calibrate(self, present: Sequence[str]) -> None:
@@ -191,7 +193,7 @@ class Candidates:
             directions = [f.directions for f in tested if f.directions is not None]
             thinned = self.fitted(present).problem.thinned
             self.residual = residual = RichestResidual.of(directions, thinned.campaign.samples)
-            level = self._level_given(present)
+            level = self._white_noise_level(present)
             if residual is not None:
                 directions = [replace(d, share=max(d.share, residual.share)) for d in directions]
             level = calibrated(level, directions, residual)
@@ -202,19 +204,19 @@ class Candidates:
                 fitted.directions = None
         self._level, self.residual = self._levels[key]
 
-    def _level_given(self, present: Sequence[str]) -> Level:
+    def _white_noise_level(self, present: Sequence[str]) -> Level:
         """Acceptance threshold in white noise, for the residual of the model with these effects."""
         base = self.converge(present)
         samples = self.independent_share(base) * base.samples.count
         least = self.policy.least_effect_share(self.campaign.motion_share)
-        return Level.shared(self.policy, len(self.names), samples, base.rms, least)
+        return Level.in_white_noise(self.policy, len(self.names), samples, base.rms, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit a model with these effects approximately, for ranking, from a smaller one."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
             way = fitted.approach or self._approach(fitted, effects, near)
-            fitted.improve(way.follow(RANKING_EVALUATIONS, fitted.least))
+            fitted.improve(way.follow(RANKING_EVALUATIONS, fitted.max_square))
             fitted.state, fitted.approach, fitted.promised = "ranked", None, np.inf
         return fitted.current_solution()
 
@@ -239,12 +241,12 @@ class Candidates:
             anew = many_peaks(near.effects)
             kept = {} if anew else {n: v for n, v in near_values.items() if "." in n}
             seeds = [near_values, kept]
-        earlier_values = None if self.before is None else self.before.values_of(effects)
+        earlier_values = None if self.earlier is None else self.earlier.values_of(effects)
         if earlier_values is not None:
             # Start from the solution before the sample weights changed.
             seeds = [earlier_values]
         each = near is not None and many_peaks(near.effects)
-        fitted.least = self._required_square(near)
+        fitted.max_square = self._required_square(near)
         return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:

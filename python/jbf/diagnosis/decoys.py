@@ -46,18 +46,18 @@ def decoy_gains(directions: Sequence[Directions]) -> list[Array]:
 
 def _gains(one: Directions, random: np.random.Generator) -> Array:
     """Gains of one candidate in twice the log likelihood, for random shifts, shape (`DRAWS`,)."""
-    scores = np.zeros((DRAWS, one.ways.shape[1]))
-    for way, noise in zip(
-        np.split(one.ways, one.ends), np.split(one.innovations, one.ends), strict=True
+    scores = np.zeros((DRAWS, one.basis.shape[1]))
+    for column, noise in zip(
+        np.split(one.basis, one.run_starts), np.split(one.innovations, one.run_starts), strict=True
     ):
         n = len(noise)
         if n == 0:
             continue
         # Compute all shifts together: a circular correlation is a product in the frequency domain.
-        products = fft.rfft(noise)[:, None] * np.conj(fft.rfft(way, axis=0))
+        products = fft.rfft(noise)[:, None] * np.conj(fft.rfft(column, axis=0))
         by_shift = fft.irfft(products, n, axis=0)
         scores += by_shift[random.integers(0, n, DRAWS)]
-    gains: Array = np.sum(scores**2 * one.counted, axis=1)
+    gains: Array = np.sum(scores**2 * one.shares, axis=1)
     return gains
 
 

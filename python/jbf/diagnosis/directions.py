@@ -30,7 +30,7 @@ class Directions:
 
     Attributes
     ----------
-    ways
+    basis
         Orthonormal basis of this part, orthogonal to the Jacobian of the model without the effect,
         shape (n, k).
     innovations
@@ -39,21 +39,21 @@ class Directions:
         Ratio of the long-run variance of each score to its variance in white noise, shape (k,).
     blocks
         First row of each block of the wild bootstrap.
-    ends
+    run_starts
         First row of each run but the first.
     share
         Ratio of the effective number of samples to the number of samples.
     """
 
-    ways: Array
+    basis: Array
     innovations: Array
     inflation: Array
     blocks: Places
-    ends: Places
+    run_starts: Places
     share: float = 1.0
 
     @property
-    def counted(self) -> Array:
+    def shares(self) -> Array:
         """Factors on the squared scores, below one in autocorrelated noise, shape (k,)."""
         return np.minimum(self.share, 1.0 / self.inflation)
 
@@ -81,15 +81,15 @@ class Directions:
         unexplained = effect - law @ step
         length = np.linalg.norm(unexplained, axis=0)
         independent = length > 1e-8 * np.maximum(np.linalg.norm(effect, axis=0), 1e-300)
-        ways = np.linalg.qr(unexplained[:, independent] / length[independent])[0]
-        ends = _ends(samples)
+        basis = np.linalg.qr(unexplained[:, independent] / length[independent])[0]
+        run_starts = _run_starts(samples)
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
-        parts, settings = np.split(unit, ends), samples.settings.variance
+        parts, settings = np.split(unit, run_starts), samples.settings.variance
         inflation = [
-            significant_inflation(np.split(way, ends), parts, samples.steps_s, settings)
-            for way in ways.T
+            significant_inflation(np.split(column, run_starts), parts, samples.steps_s, settings)
+            for column in basis.T
         ]
-        return cls(ways, unit, np.array(inflation), blocks_of(samples, share), ends, share)
+        return cls(basis, unit, np.array(inflation), blocks_of(samples, share), run_starts, share)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
         """Sums of the scores of given innovations over each block, shape (blocks, k).
@@ -104,11 +104,11 @@ class Directions:
         blocks
             First row of each block.
         """
-        scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
-        return scores * np.sqrt(self.counted)
+        scores: Array = np.add.reduceat(self.basis * innovations[:, None], blocks, axis=0)
+        return scores * np.sqrt(self.shares)
 
 
-def _ends(samples: Samples) -> Places:
+def _run_starts(samples: Samples) -> Places:
     """First row of each run but the first, among the samples with nonzero weight."""
     counts = [int(np.count_nonzero(w > 0.0)) for w in samples.weight]
     return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
@@ -119,9 +119,9 @@ def largest_common_group(directions: list[Directions]) -> list[Directions]:
 
     A candidate that excludes samples cannot be tested on the residual of the others.
     """
-    counts = Counter(len(d.ways) for d in directions)
+    counts = Counter(len(d.basis) for d in directions)
     usual = max(counts, key=lambda count: (counts[count], count), default=0)
-    return [d for d in directions if len(d.ways) == usual]
+    return [d for d in directions if len(d.basis) == usual]
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,20 +150,20 @@ class RichestResidual:
         samples
             The samples of the model to which the candidates were added.
         """
-        tested = largest_common_group([d for d in directions if d.ways.size])
+        tested = largest_common_group([d for d in directions if d.basis.size])
         if not tested:
             return None
-        every = np.column_stack([d.ways for d in tested])
+        every = np.column_stack([d.basis for d in tested])
         noise = tested[0].innovations - _explained(every, tested[0].innovations)
         noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
-        parts = np.split(noise, tested[0].ends)
+        parts = np.split(noise, tested[0].run_starts)
         return cls(noise, independent_share(parts, samples.steps_s, samples.settings.noise))
 
 
-def _explained(ways: Array, target: Array) -> Array:
-    """Projection of `target` on the span of unit columns `ways`, which may be collinear."""
-    size, axes = np.linalg.eigh(ways.T @ ways)
+def _explained(basis: Array, target: Array) -> Array:
+    """Projection of `target` on the span of unit columns `basis`, which may be collinear."""
+    size, axes = np.linalg.eigh(basis.T @ basis)
     resolved = size > 1e-12 * size[-1]
-    step = axes[:, resolved] @ ((axes[:, resolved].T @ (ways.T @ target)) / size[resolved])
-    explained: Array = ways @ step
+    step = axes[:, resolved] @ ((axes[:, resolved].T @ (basis.T @ target)) / size[resolved])
+    explained: Array = basis @ step
     return explained

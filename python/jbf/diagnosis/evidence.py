@@ -30,7 +30,7 @@ def price_of(candidates: Candidates, parameters: int) -> float:
 
 
 def evidence(
-    candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
+    candidates: Candidates, richer: Solution, simpler: Solution, *, count_local_gain: bool = False
 ) -> float:
     """Log-likelihood gain of a richer model over a simpler one, less the acceptance threshold.
 
@@ -41,7 +41,7 @@ def evidence(
 
     Parameters
     ----------
-    anywhere
+    count_local_gain
         Count a gain that occurs in a part of the record only. It is evidence of residual structure
         but not of this effect, and is otherwise reduced.
     """
@@ -50,7 +50,7 @@ def evidence(
         gain = 0.0
     if gain > 0.0:
         share = candidates.independent_share(richer)
-        gain *= share if anywhere else share_of_gain(richer, simpler, share)
+        gain *= share if count_local_gain else share_of_gain(richer, simpler, share)
     if _adds_idle_effect(candidates, richer, simpler):
         gain = min(gain, 0.0)
     price = price_of(candidates, richer.free - simpler.free)
@@ -109,7 +109,7 @@ def _differ_by_less_than_quantisation(
 
 
 def evidence_on_common_samples(
-    candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
+    candidates: Candidates, richer: Solution, simpler: Solution, *, count_local_gain: bool = False
 ) -> float:
     """Evidence for the richer of two models, after a refit of the simpler one to the same samples.
 
@@ -117,13 +117,13 @@ def evidence_on_common_samples(
     biased the simpler model, or have made its noise appear larger or smoother. That gain is not
     attributed to the effect.
     """
-    gain = evidence(candidates, richer, simpler, anywhere=anywhere)
+    gain = evidence(candidates, richer, simpler, count_local_gain=count_local_gain)
     if richer.samples is simpler.samples or gain <= 0.0:
         return gain
     problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
     values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
     refit = problem.solution(values, samples, noise_at(problem, samples, values))
-    return min(gain, evidence(candidates, richer, refit, anywhere=anywhere))
+    return min(gain, evidence(candidates, richer, refit, count_local_gain=count_local_gain))
 
 
 def swap_costs(

@@ -42,7 +42,7 @@ class Fitted:
         Score directions of that test, kept until the level of the tests has been calibrated.
     stepped
         Parameter values after one step from the null, the starting values for a weak effect.
-    approach, least
+    approach, max_square
         An unfinished search, and the sum of squares below which it is continued, N^2.
     promised
         Gain predicted by the linear model, in twice the log likelihood; infinite after ranking.
@@ -52,7 +52,7 @@ class Fitted:
         Held-out predictions of the runs; empty until they are required.
     halves
         Held-out predictions of two halves of a run, by (run, alternate).
-    motion, motion_known
+    motion_proposal, motion_estimated
         Errors of the motion re-estimated with these effects, None if they do not change; and
         whether they have been estimated.
     """
@@ -64,13 +64,13 @@ class Fitted:
     directions: Directions | None = None
     stepped: Array | None = None
     approach: Approach | None = None
-    least: float = np.inf
+    max_square: float = np.inf
     promised: float = np.inf
     peaks_searched: bool = False
     held_out: list[HeldOutPart] = field(default_factory=list)
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
-    motion: Proposal | None = None
-    motion_known: bool = False
+    motion_proposal: Proposal | None = None
+    motion_estimated: bool = False
 
     def current_solution(self) -> Solution:
         """Return the present solution of the fit, converged or not."""

@@ -77,7 +77,7 @@ class Level:
     decoys_named: int = 0
 
     @classmethod
-    def shared(
+    def in_white_noise(
         cls,
         policy: Policy,
         candidates: int,
@@ -197,9 +197,9 @@ def score_test(
                 i for i, added_here in zip(thinned.open, is_added, strict=True) if added_here
             ]
             r, rest = _rows(near)
-            _, ways = samples.stacked(*thinned.linearise(start, by=columns), near.noise)
+            _, added_columns = samples.stacked(*thinned.linearise(start, by=columns), near.noise)
             j = np.empty((len(r), len(is_added)))
-            j[:, is_added], j[:, ~is_added] = ways, rest
+            j[:, is_added], j[:, ~is_added] = added_columns, rest
         else:
             r, j = samples.stacked(*thinned.linearise(start), near.noise)
         gain = promised_gain(*triangular(r, j), len(r))
@@ -228,7 +228,7 @@ def calibrated(
     residual
         Residual without the part that candidates could explain, which is under test.
     """
-    tested = largest_common_group([d for d in directions if d.ways.size])
+    tested = largest_common_group([d for d in directions if d.basis.size])
     if not tested or residual is None:
         return level
     # The models may have residuals of different autocorrelation: use the fewest blocks.
@@ -239,7 +239,7 @@ def calibrated(
     # Use one matrix product for all candidates, which reads the signs from memory once.
     columns = np.column_stack([one.by_block(residual.innovations, blocks) for one in tested])
     scores = (signs @ columns.astype(np.float32)).astype(np.float64)
-    ends = np.cumsum([one.ways.shape[1] for one in tested])
+    ends = np.cumsum([one.basis.shape[1] for one in tested])
     least: Array = np.ones(DRAWS)
     for squares in np.split(scores**2, ends[:-1], axis=1):
         least = np.minimum(least, special.chdtrc(squares.shape[1], np.sum(squares, axis=1)))
@@ -254,10 +254,10 @@ def calibrated(
 
 def with_decoys(level: Level, directions: Sequence[Directions], samples: int) -> Level:
     """Return the threshold with the number of decoy campaigns in which a decoy exceeds it."""
-    tested = [d for d in directions if d.ways.size]
+    tested = [d for d in directions if d.basis.size]
     if not tested:
         return level
     gains = decoy_gains(tested)
-    prices = [level.price(d.ways.shape[1], samples) for d in tested]
+    prices = [level.price(d.basis.shape[1], samples) for d in tested]
     named = np.any([g > price for g, price in zip(gains, prices, strict=True)], axis=0)
     return replace(level, decoys=len(named), decoys_named=int(np.sum(named)))

@@ -105,7 +105,7 @@ def manual_round(
             candidates.fitted(chosen).problem, candidates.converge(chosen)
         )
         if settled is not None:
-            candidates = candidates.of(settled)
+            candidates = candidates.with_campaign(settled)
         trials = try_candidates(candidates, chosen).trials
         if progress is not None:
             progress("computing detection limits", 0, 0)

@@ -278,19 +278,19 @@ def _with_law(
     base = start_model(candidates)
     with_motion_errors = with_errors_of_motion(candidates, base)
     if with_motion_errors is not None:
-        candidates = candidates.of(with_motion_errors, base)
+        candidates = candidates.with_campaign(with_motion_errors, base)
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
-    present, steps, refused = selected.present, selected.steps, selected.refused
+    present, steps, of_selection = selected.present, selected.steps, selected.remainders
     with campaign.work.untimed():
         before = _before(candidates)
-        remains = (*remainder_of(candidates, present), *refused)
+        remains = (*remainder_of(candidates, present), *of_selection)
         doubted = confounders(candidates, present, remains) if remains else ()
         machine = machine_of(candidates.campaign.rig, present)
         named = tuple(name for name in present if name not in doubted)
         if doubted and not remainder_of(candidates, named):
             # The model without the confounders has no residual structure: remove them.
-            present, remains = named, refused
+            present, remains = named, of_selection
         missing = tuple(name for name in named if name not in machine)
         kept = best_predicting(candidates, present, named)
         if kept != steps[-1].effects:

@@ -21,7 +21,6 @@ from jbf.diagnosis.selection import (
     try_candidates,
 )
 from jbf.diagnosis.terms import best_term_update, re_estimated_motion
-from jbf.diagnosis.terms.shifts import DELAY
 from jbf.errors import Unfinished
 from jbf.estimation.held_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
@@ -29,6 +28,7 @@ from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import common_samples
 from jbf.estimation.transients import without_further_transients
 from jbf.models.catalogue import can_be_added
+from jbf.models.delayed_reading import DELAY
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Selected:
         Accepted effects.
     steps
         The ledger, one step per round.
-    refused
+    remainders
         Effects that fit better but do not improve the held-out predictions. If the selection did
         not finish, the reason.
     not_tried
@@ -54,7 +54,7 @@ class Selected:
     candidates: Candidates
     present: Names
     steps: list[Step]
-    refused: tuple[Remainder, ...] = ()
+    remainders: tuple[Remainder, ...] = ()
     not_tried: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -132,7 +132,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             candidates.fitted(present).problem, candidates.converge(present)
         )
         if settled is not None:
-            candidates = candidates.of(settled)
+            candidates = candidates.with_campaign(settled)
             present = still_needed(candidates, present)
             visited = {frozenset(present)}
         candidates.reached.candidates, candidates.reached.present = candidates, present
@@ -140,7 +140,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         steps.append(step(candidates, present, trial_round.trials))
         completed.append(Selected(candidates, present, list(steps)))
         may_update = updates < policy.terms.max_updates
-        update, grown = None, present
+        update, extended = None, present
         candidates.tell("reviewing the model", 0, 0)
         if trial_round.leader is not None:
             least = _evidence_of_leader(candidates, present, trial_round)
@@ -150,14 +150,17 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 richer = (*present, trial_round.leader)
                 again = re_estimated_motion(candidates, richer)
                 if again is not None:
-                    candidates, visited = candidates.of(again, richer), {frozenset(present)}
-                grown = _grown(candidates, present, trial_round)
-        ended = frozenset(grown) in visited
+                    candidates, visited = (
+                        candidates.with_campaign(again, richer),
+                        {frozenset(present)},
+                    )
+                extended = _with_leader(candidates, present, trial_round)
+        ended = frozenset(extended) in visited
         if update is None and ended and follow == "promising" and may_update:
             update = best_term_update(candidates, present)
         if update is not None:
             updates += 1
-            candidates = candidates.of(update.campaign, update.motion_of)
+            candidates = candidates.with_campaign(update.campaign, update.motion_effects)
             kept = tuple(n for n in present if n in update.effects)
             present = reconsider(candidates, still_needed(candidates, kept))
             visited, follow = {frozenset(present)}, "promising"
@@ -168,17 +171,17 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             steps.pop()
             continue
         if ended and follow == "all":
-            grown = _pair(candidates, present, trial_round)
-        if frozenset(grown) in visited:
+            extended = _pair(candidates, present, trial_round)
+        if frozenset(extended) in visited:
             if trial_round.leader is not None and len(present) >= policy.selection.max_effects:
-                refused: tuple[Remainder, ...] = (
+                remainders: tuple[Remainder, ...] = (
                     _effect_limit_reached(candidates, present, trial_round.leader),
                 )
             else:
-                refused = _refused(candidates, present)
-            return Selected(candidates, present, steps, refused)
-        visited.add(frozenset(grown))
-        present, follow = grown, "promising"
+                remainders = _unconfirmed_candidate(candidates, present)
+            return Selected(candidates, present, steps, remainders)
+        visited.add(frozenset(extended))
+        present, follow = extended, "promising"
         completed.append(Selected(candidates, present, list(steps)))
 
 
@@ -197,7 +200,7 @@ def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...
     return find_residual_structure(problem, solution, candidates.policy)
 
 
-def _grown(candidates: Candidates, present: Names, trial_round: Round) -> Names:
+def _with_leader(candidates: Candidates, present: Names, trial_round: Round) -> Names:
     """Add the effect selected in a round, and remove effects that become unnecessary.
 
     A candidate that is tied with the leader is used instead if the resulting model has fewer
@@ -307,7 +310,7 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
     return tuple(extrapolations)
 
 
-def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
+def _unconfirmed_candidate(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     """Report an unaccepted candidate that fits better but does not predict held-out runs better.
 
     Samples next to friction jumps are excluded, since a run-specific clock error of less than a
@@ -331,7 +334,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
         with_it, without = (replace(s, samples=samples) for s in (richer, base))
         better = with_it.rms < policy.selection.max_refused_rms_ratio * without.rms
         gains = (
-            evidence_on_common_samples(candidates, with_it, without, anywhere=True)
+            evidence_on_common_samples(candidates, with_it, without, count_local_gain=True)
             > policy.selection.weak_evidence
         )
         if better and gains:

@@ -237,7 +237,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     # In a correlated residual a sample is less informative, and any candidate has a small gain.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
-    behind = _cannot_reach_leader(candidates, present, shown, base) if follow == "promising" else {}
+    behind = _limits_below_leader(candidates, present, shown, base) if follow == "promising" else {}
     followed = [name for name in shown if name not in behind]
     candidates.rank_all([(*present, name) for name in followed], base)
     for name in followed:
@@ -278,7 +278,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     return sorted(ranked, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
 
-def _cannot_reach_leader(
+def _limits_below_leader(
     candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
 ) -> dict[str, float]:
     """Upper limits of the evidence of candidates that cannot have the largest evidence."""
@@ -344,12 +344,12 @@ def reconsider(
         Effects that held-out runs did not confirm in this round; not used as replacements.
     """
     seen = [present]
-    while (current := _questioned(candidates, seen[-1], unconfirmed)) not in seen:
+    while (current := _reviewed_once(candidates, seen[-1], unconfirmed)) not in seen:
         seen.append(current)
     return current
 
 
-def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
+def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
     """Review each effect once: keep, remove or replace it, and return the resulting effects."""
     current = present
     for name in present:

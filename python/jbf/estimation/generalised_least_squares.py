@@ -80,7 +80,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
 
-    def iterated(clock_s: float, *, delays: bool = True) -> _End:
+    def iterated(clock_s: float, *, delays: bool = True) -> _ClockFit:
         """Fit with the force on one clock."""
         return _iterated(problem, solution, clock_s, delays=delays)
 
@@ -123,7 +123,7 @@ def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem,
     return problem, _near(problem, solution)
 
 
-def _with_corners_of_forces(first: Problem, end: _End) -> _End:
+def _with_corners_of_forces(first: Problem, end: _ClockFit) -> _ClockFit:
     """Locate corners (abrupt changes of speed) of the motion by the forces, and refit.
 
     Parameters
@@ -147,7 +147,7 @@ def _near(problem: Problem, solution: Solution) -> Solution:
 
 
 @dataclass(frozen=True, eq=False)
-class _End:
+class _ClockFit:
     """A generalised least-squares fit with the force on one clock.
 
     Attributes
@@ -187,7 +187,7 @@ def _iterated(
     *,
     late_s: float | None = None,
     delays: bool = True,
-) -> _End:
+) -> _ClockFit:
     """Iterate the fit with a delay `clock_s` of the force.
 
     Parameters
@@ -208,7 +208,7 @@ def _iterated(
         share = motion.mean_share(solution.samples.weight)
         if late_s == 0.0 and share < settings.min_delay_share:
             break
-        step_s = _delay(first, problem, solution, motion, late_s, clock_s) if delays else 0.0
+        step_s = _delay_step_s(first, problem, solution, motion, late_s, clock_s) if delays else 0.0
         if late_s == step_s == 0.0 and share < settings.min_share:
             break
         if step_s != 0.0:
@@ -220,10 +220,10 @@ def _iterated(
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
         if solution.samples.rms(changes) < SETTLED * motion.noise:
             break
-    return _End(first, problem, solution, late_s != clock_s, clock_s, late_s)
+    return _ClockFit(first, problem, solution, late_s != clock_s, clock_s, late_s)
 
 
-def _with_smoothing(end: _End) -> Array:
+def _with_smoothing(end: _ClockFit) -> Array:
     """Change of each search variable if the motion is smoothed less, shape (k,)."""
     problem, solution = end.problem, end.solution
     factor = problem.campaign.settings.motion.roughness_factor
@@ -373,7 +373,7 @@ def _fitted(
     return problem.solution(values, samples, WHITE, end.converged, end.message)
 
 
-def _delay(
+def _delay_step_s(
     first: Problem,
     problem: Problem,
     solution: Solution,

@@ -196,7 +196,7 @@ class Approach:
     def follow(
         self,
         evaluations: int,
-        least: float = np.inf,
+        max_square: float = np.inf,
         followed: int = FOLLOWED,
         steps: int = TRIAL_EVALUATIONS,
         method: Method = "dogbox",
@@ -207,7 +207,7 @@ class Approach:
         ----------
         evaluations
             Maximum number of evaluations; enough to rank candidates, or to converge.
-        least
+        max_square
             Upper limit of the sum of squares, N^2, after the first steps; otherwise the search is
             not continued.
         followed, steps, method
@@ -230,7 +230,7 @@ class Approach:
                 ends, key=lambda result: visited.square(thinned, thinned_samples, result.values)
             )
         end = replace(best, converged=False, message="not followed")
-        if len(starts) == 1 or _square(problem, thinned, visited, best.values) < least:
+        if len(starts) == 1 or _square(problem, thinned, visited, best.values) < max_square:
             if not best.converged or method != "dogbox":
                 # The search continues where an earlier one ended.
                 visited.ended.clear()

@@ -134,7 +134,7 @@ def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -
     simple, rich = candidates.converge(()), candidates.converge(("inertia",))
     gain, price = likelihood_gain(rich, simple), price_of(candidates, 1)
     found = evidence(candidates, rich, simple)
-    anywhere = evidence(candidates, rich, simple, anywhere=True)
+    anywhere = evidence(candidates, rich, simple, count_local_gain=True)
     assert found == pytest.approx(gain * share_of_gain(rich, simple, effective_share(rich)) - price)
     assert anywhere == pytest.approx(gain * effective_share(rich) - price)
     assert found < 0.0 < anywhere <= gain - price
@@ -234,7 +234,7 @@ def test_score_test_predicts_likelihood_gain_and_value_of_a_linear_effect() -> N
     assert gain == pytest.approx(real_gain, rel=0.1)
     place = problem.names.index("sensor_offset.b")
     assert stepped[place] == pytest.approx(fitted.values[place], rel=0.1)
-    assert (directions.ways[:, 0] @ directions.innovations) ** 2 == pytest.approx(gain, rel=0.1)
+    assert (directions.basis[:, 0] @ directions.innovations) ** 2 == pytest.approx(gain, rel=0.1)
     # Both halves of the samples contribute to the gain.
     first = [np.arange(len(c)) < len(c) // 2 for c in near.samples.counted]
     halves = [

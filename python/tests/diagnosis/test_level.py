@@ -34,15 +34,15 @@ Draw = Callable[[np.random.Generator], Array]
 
 def test_false_alarm_rate_is_shared_and_minimum_size_grows_with_samples() -> None:
     policy = replace(DEFAULT, false_alarm_rate=0.02, min_effect_share=0.05, artefact_margin=7.0)
-    level = Level.shared(policy, 8, 1000.0, 4.0)
+    level = Level.in_white_noise(policy, 8, 1000.0, 4.0)
     assert level.chance == 0.02 / 8
     assert level.artefact_margin == 7.0
     assert level.min_gain == pytest.approx(0.05**2 * 1000.0)
     # 1 N is above 5 % of 4 N and below 5 % of 40 N.
     in_newtons = replace(policy, min_effect=1.0)
-    assert Level.shared(in_newtons, 8, 1000.0, 4.0).min_gain == pytest.approx(1000.0 / 16.0)
-    assert Level.shared(in_newtons, 8, 1000.0, 40.0).min_gain == pytest.approx(2.5)
-    assert Level.shared(policy, 0, 1000.0, 4.0).chance == 0.02
+    assert Level.in_white_noise(in_newtons, 8, 1000.0, 4.0).min_gain == pytest.approx(1000.0 / 16.0)
+    assert Level.in_white_noise(in_newtons, 8, 1000.0, 40.0).min_gain == pytest.approx(2.5)
+    assert Level.in_white_noise(policy, 0, 1000.0, 4.0).chance == 0.02
 
 
 def test_threshold_is_the_largest_of_chance_level_margin_and_minimum_size() -> None:
@@ -63,10 +63,10 @@ def test_each_further_parameter_raises_the_threshold_by_the_log_of_the_samples()
 
 
 def test_threshold_in_a_long_recording_is_the_minimum_effect_size() -> None:
-    assert Level.shared(DEFAULT, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(90.0)
+    assert Level.in_white_noise(DEFAULT, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(90.0)
     in_newtons = replace(DEFAULT, min_effect_share=0.0, min_effect=0.02)
-    assert Level.shared(in_newtons, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(160.0)
-    short = Level.shared(in_newtons, 20, 1e3, 0.5).price(1, 1000)
+    assert Level.in_white_noise(in_newtons, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(160.0)
+    short = Level.in_white_noise(in_newtons, 20, 1e3, 0.5).price(1, 1000)
     assert short == pytest.approx(stats.chi2.isf(0.01 / 20, 1) + 22.0)
 
 
@@ -109,12 +109,12 @@ def test_direction_of_an_effect_is_of_unit_length_and_orthogonal_to_the_law() ->
     noise = _white(np.random.default_rng(3))
     own = (LAW @ [2.0, 3.0] + _shapes()[2])[:, None]
     for unit in (1e-6, 1.0, 1e6):
-        ways = Directions.of(noise, unit * own, LAW, SAMPLES, 1.0).ways
-        assert ways.shape == own.shape
-        np.testing.assert_allclose(ways.T @ LAW, 0.0, atol=1e-9)
-        np.testing.assert_allclose(ways.T @ ways, 1.0)
+        basis = Directions.of(noise, unit * own, LAW, SAMPLES, 1.0).basis
+        assert basis.shape == own.shape
+        np.testing.assert_allclose(basis.T @ LAW, 0.0, atol=1e-9)
+        np.testing.assert_allclose(basis.T @ basis, 1.0)
     # No direction remains of a derivative that the law contains.
-    assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).ways.shape[1] == 0
+    assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).basis.shape[1] == 0
 
 
 def test_weight_of_a_score_is_reduced_if_the_noise_is_larger_where_the_effect_acts() -> None:
@@ -123,14 +123,14 @@ def test_weight_of_a_score_is_reduced_if_the_noise_is_larger_where_the_effect_ac
     noise: Array = np.where(here, 5.0, 1.0) * _white(np.random.default_rng(2))
     one_run = Samples(("a",), (STEP_S,), (np.ones(RUNS * N, bool),), (np.ones(RUNS * N),))
     found = Directions.of(noise, here[:, None].astype(float), LAW[:, :1], one_run, 1.0)
-    assert found.counted[0] == pytest.approx(np.mean(noise**2) / 25.0, rel=0.5)
+    assert found.shares[0] == pytest.approx(np.mean(noise**2) / 25.0, rel=0.5)
     even = Directions.of(_white(np.random.default_rng(2)), TIME[:, None], LAW, SAMPLES, 0.25)
-    assert even.counted[0] == pytest.approx(0.25, rel=0.1)
+    assert even.shares[0] == pytest.approx(0.25, rel=0.1)
 
 
 def _level(false_alarm_rate: float = 0.01) -> Level:
     policy = replace(DEFAULT, min_effect_share=0.0, false_alarm_rate=false_alarm_rate)
-    return Level.shared(policy, TESTED, RUNS * N, 1.0)
+    return Level.in_white_noise(policy, TESTED, RUNS * N, 1.0)
 
 
 @pytest.mark.extended
@@ -141,7 +141,7 @@ def test_false_alarm_rate_does_not_exceed_the_nominal_rate_in_four_kinds_of_nois
     campaigns, false = 120, 0
     for seed in range(campaigns):
         directions = _directions(NOISES[noise](np.random.default_rng(seed)))
-        gains = [float(np.sum((d.ways.T @ d.innovations) ** 2 * d.counted)) for d in directions]
+        gains = [float(np.sum((d.basis.T @ d.innovations) ** 2 * d.shares)) for d in directions]
         false += bool(max(gains) > calibrated(_level(0.05), directions).critical)
     assert false <= stats.binom.ppf(0.999, campaigns, 0.05)
 
@@ -202,10 +202,10 @@ def test_calibrated_level_is_the_false_alarm_quantile_of_scores_with_random_sign
 
 
 def test_candidate_with_two_parameters_has_chi_square_of_two_degrees() -> None:
-    ways = np.zeros((8, 2))
-    ways[:4, 0] = ways[4:, 1] = 0.5
+    basis = np.zeros((8, 2))
+    basis[:4, 0] = basis[4:, 1] = 0.5
     noise = np.tile([1.0, 1.0, -1.0, -1.0], 2)
-    one = Directions(ways, noise, np.ones(2), np.array([0, 2, 4, 6]), NO_ENDS)
+    one = Directions(basis, noise, np.ones(2), np.array([0, 2, 4, 6]), NO_ENDS)
     found = calibrated(Level(false_alarm_rate=0.2, candidates=1, chance=1.0), [one])
     assert found.chance == pytest.approx(stats.chi2.sf(8.0, 2), rel=1e-3)
 
@@ -246,7 +246,7 @@ def test_decoy_is_a_candidate_shifted_cyclically_within_each_run(ends: list[int]
     one = _decoy(random.standard_normal((700, 1)), noise, ends, counted=0.5)
     scores = np.zeros(DRAWS)
     draws = np.random.default_rng(DRAWS)
-    for way, e in zip(np.split(one.ways[:, 0], ends), np.split(noise, ends), strict=True):
+    for way, e in zip(np.split(one.basis[:, 0], ends), np.split(noise, ends), strict=True):
         if len(e):
             by_shift = np.array([np.roll(way, shift) @ e for shift in range(len(e))])
             scores += by_shift[draws.integers(0, len(e), DRAWS)]

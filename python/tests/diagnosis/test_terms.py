@@ -171,7 +171,7 @@ def test_selection_that_exceeds_its_budget_ends_with_the_last_reviewed_model() -
     limited.campaign.work.renew(0.5 * whole.campaign.work.taken)
     ended = select(limited)
     assert set(ended.present) < set(present)
-    assert [r.axis for r in ended.refused] == ["search"]
+    assert [r.axis for r in ended.remainders] == ["search"]
     assert ended.not_tried
     limited = coulomb_candidates(linear_runs("offset and drag"))
     limited.campaign.work.renew(1e-3 * whole.campaign.work.taken)

@@ -126,7 +126,7 @@ def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds
             phase = 2.0 * np.pi * place / pitch
             pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
             gains.append(float(np.sum((pair @ np.linalg.lstsq(pair, noise, rcond=None)[0]) ** 2)))
-    threshold = Level.shared(DEFAULT, 20, samples, NOISE_N).price(3, samples)
+    threshold = Level.in_white_noise(DEFAULT, 20, samples, NOISE_N).price(3, samples)
     # Two parameters of a fixed pitch would gain 1.4 (median of chi-square).
     assert 4.0 < np.median(gains) < 0.8 * threshold
     assert max(gains) < threshold

@@ -131,7 +131,7 @@ def test_search_stops_unconverged_if_it_cannot_reach_the_given_sum_of_squares() 
     problem = Problem(with_mass(), "stribeck", "journal", ("inertia",))
     best = Approach(problem, [{}]).follow(60)
     least = problem.square(best.values)
-    stopped = Approach(problem, [{}]).follow(60, least=0.9 * least)
+    stopped = Approach(problem, [{}]).follow(60, max_square=0.9 * least)
     assert (best.converged, stopped.converged) == (True, False)
     start = Approach(problem, [{}]).starts[0]
     assert problem.square(start) > problem.square(stopped.values) > 0.9 * least

@@ -58,7 +58,7 @@ def results() -> Results:
     models = [Model(Rig(), "coulomb", parameters={**LAW, "F_c": force}) for force in (5.0, 6.0)]
     runs = there_and_back(coulomb, noise_rms=0.1)
     power = Power("sensor_offset", "b", "N", 0.1, 0.2, False, 0.02, 0.15, ("sensor_drift",))
-    level = Level.shared(DEFAULT, 12, 2000.0, 0.1)
+    level = Level.in_white_noise(DEFAULT, 12, 2000.0, 0.1)
     planned = PlannedPower(models[0], 0.1, (power,), {}, ("there",), level)
     simulated = tuple(Answer((), draw, "adequate", (), {}) for draw in range(3))
     all_results = (

@@ -62,13 +62,13 @@ class TermUpdate:
         The campaign with a term added, or with a random effect removed.
     effects
         Effects that are still needed.
-    motion_of
+    motion_effects
         Effects with which the errors of the motion were re-estimated; None if they are unchanged.
     """
 
     campaign: Campaign
     effects: Names
-    motion_of: Names | None = None
+    motion_effects: Names | None = None
 
 
 def best_term_update(
@@ -118,9 +118,9 @@ def _estimate(term: Term, candidates: Candidates, model: Model) -> Proposal | No
     if term is not errors_of_motion:
         return term(model)
     fitted = candidates.fitted(model.problem.effects)
-    if not fitted.motion_known:
-        fitted.motion, fitted.motion_known = errors_of_motion(model), True
-    return fitted.motion
+    if not fitted.motion_estimated:
+        fitted.motion_proposal, fitted.motion_estimated = errors_of_motion(model), True
+    return fitted.motion_proposal
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:

@@ -145,10 +145,12 @@ def _gain(shifted: Shifted, other: Solution, share: float) -> float:
     after = samples.without_deviations(solution.residuals, solution.noise)
     before = other.samples.without_deviations(other.residuals, other.noise)
     ratio = other.samples.rms(before) / max(samples.rms(after), 1e-300)
-    return 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300))) - _volume(shifted)
+    return 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300))) - _log_determinant(
+        shifted
+    )
 
 
-def _volume(shifted: Shifted) -> float:
+def _log_determinant(shifted: Shifted) -> float:
     """Log-determinant of the covariance of the delays; zero for a drift or equal delays."""
     if shifted.drift != 0.0 or np.ptp(shifted.late_s) == 0.0:
         return 0.0

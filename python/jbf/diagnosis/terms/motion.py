@@ -39,15 +39,15 @@ def errors_of_motion(model: Model) -> Proposal | None:
     before, motion = campaign.samples.motion, after.samples.motion
     if before is None and motion is None:
         return None
-    old, new = before or _none(solution), motion or _none(after)
+    old, new = before or _without_errors(solution), motion or _without_errors(after)
     ratio = max(old.noise / new.noise, solution.rms / max(after.rms, 1e-150))
     if before is not None and ratio < model.policy.motion.min_noise_ratio:
         return None
-    of_before, of_after = _common_weights((campaign, solution), (again.campaign, after))
-    gain = old.whitening(of_before).deviance(solution.residuals)
-    gain -= new.whitening(of_after).deviance(after.residuals)
-    held_out = _held_out_deviance(model.problem, solution, old, of_before)
-    held_out -= _held_out_deviance(again, after, new, of_after)
+    weights_before, weights_after = _common_weights((campaign, solution), (again.campaign, after))
+    gain = old.whitening(weights_before).deviance(solution.residuals)
+    gain -= new.whitening(weights_after).deviance(after.residuals)
+    held_out = _held_out_deviance(model.problem, solution, old, weights_before)
+    held_out -= _held_out_deviance(again, after, new, weights_after)
     # A problem with a shifted force has samples of its own.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
     return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2), held_out)
@@ -64,7 +64,7 @@ def _held_out_deviance(
     return predictive_deviance(solution, parts, samples, WHITE, variance) + log_determinant
 
 
-def _none(solution: Solution) -> ErrorsInMotion:
+def _without_errors(solution: Solution) -> ErrorsInMotion:
     """Return errors of the motion that are zero, with the noise of a solution."""
     runs = len(solution.residuals)
     sensitivity = tuple(np.zeros((len(r), 3)) for r in solution.residuals)

@@ -72,9 +72,9 @@ def without_random_effect(model: Model) -> Campaign | None:
 
 def _gain(richer: Solution, simpler: Solution) -> float:
     """Gain of the random effects in a model, in twice the log marginal likelihood."""
-    volume = _log_determinant(richer) - _log_determinant(simpler)
+    penalty = _log_determinant(richer) - _log_determinant(simpler)
     gain = simpler.samples.cost(simpler.residuals, simpler.noise) - richer.cost
-    return independent_fraction(richer, simpler) * gain - volume
+    return independent_fraction(richer, simpler) * gain - penalty
 
 
 def _log_determinant(solution: Solution) -> float:

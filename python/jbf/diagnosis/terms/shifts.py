@@ -19,11 +19,10 @@ from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.estimation.transients import without_transients
+from jbf.models.delayed_reading import DELAY, TAU
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
-DELAY = "time_delay"
-TAU = "time_delay.tau_s"
 EVALUATIONS = 12
 """Number of steps of a fit to shifted runs. It limits the effort only."""
 STEPS = 10
@@ -101,7 +100,7 @@ def without_delay(effects: Names) -> Names:
     return tuple(name for name in effects if name != DELAY)
 
 
-def refitted(
+def fitted_to_shifted(
     problem: Problem,
     campaign: Campaign,
     effects: Names,
@@ -140,7 +139,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             if not white:
                 break
             white = False
-            now = _coloured(now)
+            now = _with_coloured_noise(now)
             continue
         # Where delays differ between runs, a common delay is also attributed to the recording.
         values = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
@@ -155,10 +154,10 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             return start
         campaign = moved(first, late_s, start.drift)
         effects = without_delay(now.problem.effects)
-        problem, solution = refitted(now.problem, campaign, effects, values, now.solution)
+        problem, solution = fitted_to_shifted(now.problem, campaign, effects, values, now.solution)
         now = Shifted(problem, solution, late_s, start.drift)
     if white:
-        now = _coloured(now)
+        now = _with_coloured_noise(now)
     return now if now.solution.rms < start.solution.rms else start
 
 
@@ -177,7 +176,7 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
             if not white:
                 break
             white = False
-            now = _coloured(now)
+            now = _with_coloured_noise(now)
             continue
         drift = now.drift + float(np.clip(step.drift, -most, most))
         late_s = 0.5 * drift * lasts_s
@@ -185,12 +184,12 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
             return start
         values = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
         campaign = moved(first, late_s, drift)
-        problem, solution = refitted(
+        problem, solution = fitted_to_shifted(
             now.problem, campaign, now.problem.effects, values, now.solution
         )
         now = Shifted(problem, solution, late_s, drift)
     if white:
-        now = _coloured(now)
+        now = _with_coloured_noise(now)
     return now if now.solution.rms < start.solution.rms else start
 
 
@@ -201,11 +200,11 @@ def with_mean_delay(shifted: Shifted) -> Shifted:
     change_s = mean_s - shifted.late_s
     values = dict(zip(problem.names, solution.values.tolist(), strict=True))
     campaign = moved(problem, change_s, 0.0)
-    again, fit = refitted(problem, campaign, problem.effects, values, solution)
+    again, fit = fitted_to_shifted(problem, campaign, problem.effects, values, solution)
     return Shifted(again, fit, np.full(len(change_s), mean_s), shifted.drift)
 
 
-def _coloured(shifted: Shifted) -> Shifted:
+def _with_coloured_noise(shifted: Shifted) -> Shifted:
     """Re-estimate the noise of shifted runs from the present residuals."""
     problem, values, samples = shifted.problem, shifted.solution.values, shifted.solution.samples
     noise = noise_at(problem, samples, values)
@@ -236,7 +235,7 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
         late_s, drift = later_s, drifted
         campaign = moved(first, late_s, drift)
         effects = without_delay(problem.effects)
-        problem, solution = refitted(problem, campaign, effects, values, solution)
+        problem, solution = fitted_to_shifted(problem, campaign, effects, values, solution)
     return None if campaign is old else Shifted(problem, solution, late_s, drift)
 
 
@@ -266,7 +265,7 @@ def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
         return shifted
     campaign = moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))
-    again, solution = refitted(problem, campaign, effects, near, shifted.solution)
+    again, solution = fitted_to_shifted(problem, campaign, effects, near, shifted.solution)
     if solution.rms >= shifted.solution.rms:
         return shifted
     return Shifted(again, solution, late_s, 0.0)

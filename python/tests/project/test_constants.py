@@ -45,7 +45,7 @@ NUMERICAL = {
         diagnosis.terms.shifts: SETTLED
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
-        estimation.generalised_least_squares: SETTLED EXACT_RECORD
+        estimation.generalised_least_squares: SETTLED EXACT_RECORD RATIO_STEP
         estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
@@ -97,7 +97,8 @@ NUMERICAL = {
     "range of a search, wider than any plausible result": """
         diagnosis.power.detection_limits: EXPONENTS
         estimation.delay_scan: REACH LEAST_REACH_STEPS
-        estimation.generalised_least_squares: LEAST_NOISE LEAST_INTENSITY
+        estimation.generalised_least_squares: LEAST_NOISE LEAST_INTENSITY MOST_NOISE
+        estimation.generalised_least_squares: MOST_SCALE RATIOS
         estimation.quantisation: MOST_NOISE
         estimation.search: REACH
     """,
@@ -109,7 +110,6 @@ NUMERICAL = {
     "starting values of searches": """
         diagnosis.terms.noise_variance: START_FREEDOM
         estimation.campaign: HUM
-        estimation.generalised_least_squares: SIMPLEX
         estimation.pitches: LINES BINS_A_PITCH KNOTS
         estimation.starting_values: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES RULES_OF_ANY_LAW
     """,

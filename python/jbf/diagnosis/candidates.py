@@ -7,7 +7,7 @@ computed once and cached.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -35,8 +35,8 @@ from jbf.estimation.minimum import Approach, approach, search_peaks, settle
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from jbf.models.catalogue import can_be_added, find_effect, reason_not_applicable
 from jbf.models.catalogue import effects as catalogue
-from jbf.models.catalogue import find_effect, reason_not_applicable
 from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
@@ -83,7 +83,7 @@ class Candidates:
     def with_campaign(
         self, campaign: Campaign, motion_effects: Iterable[str] | None = None
     ) -> Candidates:
-        """Return the candidates of a changed campaign; the fits start from present solutions.
+        """Return the candidates of a changed campaign; their fits start from these solutions.
 
         `motion_effects` has the effects with which new errors of the motion were estimated.
         """
@@ -100,15 +100,23 @@ class Candidates:
     @cached_property
     def names(self) -> list[str]:
         """Names of the effects that are compatible with the law and testable in these runs."""
-        pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
-        return [e.name for e in pages if self.campaign.missing_requirement(e) is None]
+        return [name for name, reason in self._missing_requirements.items() if reason is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
         """Effects that are compatible with the law but not testable in these runs, with reasons."""
-        pages = [e for e in catalogue().values() if reason_not_applicable(e, self.law) is None]
-        reasons = {e.name: self.campaign.missing_requirement(e) for e in pages}
+        reasons = self._missing_requirements
         return {name: reason for name, reason in reasons.items() if reason is not None}
+
+    @cached_property
+    def _missing_requirements(self) -> dict[str, str | None]:
+        """Why these runs cannot test an effect that the law allows, or None, by name."""
+        pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
+        return {e.name: self.campaign.missing_requirement(e) for e in pages}
+
+    def addable(self, present: Collection[str]) -> list[str]:
+        """Names of the effects that can be added to a model with the effects `present`."""
+        return [n for n in self.names if n not in present and can_be_added(n, present)]
 
     def fitted(self, effects: Iterable[str]) -> Fitted:
         """Return the cached fit of a set of effects, or a new one whose `state` is `posed`."""
@@ -125,7 +133,7 @@ class Candidates:
             return None
         return fitted.named_values()
 
-    # ---- state of the fits ------------------------------------------------------------------
+    # ---- score tests ------------------------------------------------------------------------
 
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
         """Gain that a score test predicts for effects added to a smaller model, before any fit.
@@ -148,20 +156,17 @@ class Candidates:
         fitted = self.fitted(effects)
         if fitted.score is None:
             added = set(effects) - set(near.effects)
-            pages = {
-                name: page
+            nulls = {
+                name: page.null
                 for name, page in fitted.problem.parameters.items()
-                if name.split(".")[0] in added
+                if name.split(".")[0] in added and page.null is not None
             }
-            nulls = {n: p.null for n, p in pages.items() if p.null is not None}
             reach = bool(nulls) and all(np.isfinite(null) for null in nulls.values())
-            # A jump that moves by less than a sample changes no sample: the score at the null is
-            # zero.
+            # A jump that moves by less than a sample changes no sample: the score is zero.
             if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
-                near_values = self._values_of(near)
-                starts = fitted.problem.starts({**near_values, **nulls})
+                starts = fitted.problem.starts({**self._values_of(near), **nulls})
                 fitted.score, fitted.directions, fitted.stepped = score_test(
                     fitted.problem, starts, near, added
                 )
@@ -173,6 +178,7 @@ class Candidates:
         return fitted.score
 
     # ---- the level of the tests -------------------------------------------------------------
+
     def independent_share(self, solution: Solution) -> float:
         """Effective number of independent samples of a solution divided by their number."""
         share = effective_share(solution)
@@ -193,10 +199,9 @@ class Candidates:
             directions = [f.directions for f in tested if f.directions is not None]
             thinned = self.fitted(present).problem.thinned
             self.residual = residual = RichestResidual.of(directions, thinned.campaign.samples)
-            level = self._white_noise_level(present)
             if residual is not None:
                 directions = [replace(d, share=max(d.share, residual.share)) for d in directions]
-            level = calibrated(level, directions, residual)
+            level = calibrated(self._white_noise_level(present), directions, residual)
             level = with_decoys(level, directions, self.campaign.samples.count)
             self._levels[key] = (level, residual)
             # These arrays are as large as the records and are not needed again.
@@ -210,6 +215,8 @@ class Candidates:
         samples = self.independent_share(base) * base.samples.count
         least = self.policy.least_effect_share(self.campaign.motion_share)
         return Level.in_white_noise(self.policy, len(self.names), samples, base.rms, least)
+
+    # ---- fits -------------------------------------------------------------------------------
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit a model with these effects approximately, for ranking, from a smaller one."""
@@ -233,21 +240,19 @@ class Candidates:
     def _approach(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
         """Create the unfinished search for the fit of these effects, with its starting values."""
         seeds: list[Mapping[str, float]] = [{}]
+        many = near is not None and many_peaks(near.effects)
         if near is not None:
             near_values = self._values_of(near)
-            # The fitted law parameters may be poor starting values, since they compensated for a
-            # missing effect. For effects with many peaks, neither is the peak without the new
-            # effect a useful start.
-            anew = many_peaks(near.effects)
-            kept = {} if anew else {n: v for n, v in near_values.items() if "." in n}
+            # Law parameters that compensated for the missing effect are poor starting values; with
+            # many peaks, those of the other effects are poor as well.
+            kept = {} if many else {n: v for n, v in near_values.items() if "." in n}
             seeds = [near_values, kept]
         earlier_values = None if self.earlier is None else self.earlier.values_of(effects)
         if earlier_values is not None:
             # Start from the solution before the sample weights changed.
             seeds = [earlier_values]
-        each = near is not None and many_peaks(near.effects)
         fitted.max_square = self._required_square(near)
-        return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
+        return Approach(fitted.problem, seeds, each=many, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         """Rank several sets of effects (`rank`), each from the solution of a smaller model."""
@@ -260,9 +265,10 @@ class Candidates:
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         self._each("looking at", lambda effects: self.look(effects, near), order, near)
 
-    def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Compute and cache the score tests of several sets of effects in a smaller model."""
+    def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> list[float]:
+        """Return the gain of each set of effects by its score test (`score_test`)."""
         self._each("testing", lambda effects: self.score_test(effects, near), sets, near)
+        return [self.score_test(effects, near) for effects in sets]
 
     def _each(
         self,
@@ -316,8 +322,7 @@ class Candidates:
         problem, richer_values = fitted.problem, self.fitted(richer).named_values()
         start = np.array([richer_values[name] for name in problem.names])
         samples = problem.samples_at(start)
-        refit = problem.solution(start, samples, near.noise, False)
-        refit = settle(problem, refit, samples)
+        refit = settle(problem, problem.solution(start, samples, near.noise, False), samples)
         # With run-specific parameters, a wrong law can have a higher likelihood but a larger RMS.
         too_large = refit.rms > self.policy.selection.max_rms_ratio * near.rms
         if likelihood_gain(refit, near) > 0.0 and not too_large:
@@ -332,13 +337,10 @@ class Candidates:
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
         halved = sorted(indispensable_runs(self.fitted(richer).problem, after))
-        held_out, richer_held_out = (
-            self.held_out_parts(present, halved),
-            self.held_out_parts(richer, halved),
-        )
+        held_out, richer_held_out = (self.held_out_parts(e, halved) for e in (present, richer))
         names = tuple(self.campaign.samples.runs[i] for i in halved)
-        prepared = self.campaign.prepared
-        return Confirmation.of(before, after, held_out, richer_held_out, names, prepared)
+        compared = before, after, held_out, richer_held_out
+        return Confirmation.of(*compared, names, self.campaign.prepared)
 
     def held_out_parts(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
@@ -382,8 +384,7 @@ class Candidates:
 
     def _values_of(self, near: Solution) -> dict[str, float]:
         """Parameter values of a solution, by name."""
-        names = self.fitted(near.effects).problem.names
-        return dict(zip(names, near.values.tolist(), strict=True))
+        return self.fitted(near.effects).problem.values_by_name(near.values)
 
     def _required_square(self, near: Solution | None) -> float:
         """Sum of squares below which a model with more effects has a relevant gain, N^2."""

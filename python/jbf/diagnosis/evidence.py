@@ -34,16 +34,16 @@ def evidence(
 ) -> float:
     """Log-likelihood gain of a richer model over a simpler one, less the acceptance threshold.
 
-    The effective number of samples is smaller where both the residual of the richer model and that
-    of the richest one (`RichestResidual`) are correlated, or the score.
-    An effect with its parameters at the null has no positive evidence: its gain is due to the
-    search.
+    The gain is multiplied by the share of independent samples. The share is that of the residual of
+    `richer` or that of the residual of the model with all candidates (`RichestResidual`), whichever
+    is larger, and at most that of the score (`share_of_gain`). An effect with its parameters at the
+    null has no positive evidence: its gain is due to the search.
 
     Parameters
     ----------
     count_local_gain
-        Count a gain that occurs in a part of the record only. It is evidence of residual structure
-        but not of this effect, and is otherwise reduced.
+        Do not reduce a gain that occurs in a part of the record only. Such a gain is evidence of
+        residual structure, but not of this effect.
     """
     gain = likelihood_gain(richer, simpler)
     if gain > 0.0 and _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
@@ -155,11 +155,10 @@ def swap_costs(
 
     policy = candidates.policy
     costs = dict.fromkeys(others, cost(near))
-    candidates.score_all(list(sets.values()), near)
+    scores = dict(zip(others, candidates.score_all(list(sets.values()), near), strict=True))
     shows = policy.search.min_score_share * price_of(candidates, 1)
     # Subtract the gain of the next step without the effect.
     least = policy.search.min_swap_share * likelihood_gain(current, near) + next_step_gain(near)
-    scores = {name: candidates.score_test(effects, near) for name, effects in sets.items()}
     open_names = [name for name in others if scores[name] > max(shows, least)]
     # With many peaks, a step from one peak does not predict the height of another.
     one_peak = [name for name in open_names if not many_peaks(sets[name])]

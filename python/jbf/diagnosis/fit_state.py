@@ -43,7 +43,8 @@ class Fitted:
     stepped
         Parameter values after one step from the null, the starting values for a weak effect.
     approach, max_square
-        An unfinished search, and the sum of squares below which it is continued, N^2.
+        An unfinished search, and the sum of squares after its first steps below which it is
+        continued, N^2.
     promised
         Gain predicted by the linear model, in twice the log likelihood; infinite after ranking.
     peaks_searched
@@ -85,7 +86,7 @@ class Fitted:
 
     def named_values(self) -> dict[str, float]:
         """Parameter values of the present solution, by name."""
-        return dict(zip(self.problem.names, self.current_solution().values.tolist(), strict=True))
+        return self.problem.values_by_name(self.current_solution().values)
 
     def predict(self, motion: Driven) -> tuple[Array, Array]:
         """Friction of the fitted model under a motion, and its Jacobian in the search variables."""

@@ -44,8 +44,9 @@ class Selected:
     steps
         The ledger, one step per round.
     remainders
-        Effects that fit better but do not improve the held-out predictions. If the selection did
-        not finish, the reason.
+        Reported in addition to the residual structure: an effect that fits better but does not
+        improve the held-out predictions, the limit on the number of effects, or the reason why the
+        selection did not finish.
     not_tried
         Effects that were not tested in addition to `present`, because the selection did not finish,
         with the reason.
@@ -109,25 +110,27 @@ def _ended_early(last: Selected, stop: Unfinished) -> Selected:
                 otherwise = f"models with {trial.effect}"
         steps[-1] = replace(steps[-1], trials=tuple(trials))
     tested = {trial.effect for trial in steps[-1].trials}
-    untested = [
-        name
-        for name in candidates.names
-        if name not in present and name not in tested and can_be_added(name, present)
-    ]
+    untested = [name for name in candidates.addable(present) if name not in tested]
     where = f"{stop.reason}; not all further effects were tested"
     not_tried = dict.fromkeys(untested or [otherwise], stop.reason)
     return Selected(candidates, present, steps, (Remainder(SEARCH, where, 0.0),), not_tried)
 
 
 def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
-    """Select effects and terms, and append each tested and each reviewed model to `completed`."""
+    """Select effects and terms, and append each tested and each reviewed model to `completed`.
+
+    Each pass of the loop tests the candidates of the present model once and ends in one of four
+    ways: with a changed observation model, with another set of effects to test, with more
+    candidates to fit (`follow`), or with the result. The models in `visited` were tested with the
+    present observation model; the selection does not return to them.
+    """
     policy = candidates.policy
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
     visited = {frozenset(present)}
     updates = 0
     while True:
-        candidates.converge(present)
+        # Exclude samples at which this model shows a further initial-state transient.
         settled = without_further_transients(
             candidates.fitted(present).problem, candidates.converge(present)
         )
@@ -136,12 +139,14 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             present = still_needed(candidates, present)
             visited = {frozenset(present)}
         candidates.reached.candidates, candidates.reached.present = candidates, present
+        # Test every candidate in addition to the present effects.
         trial_round = try_candidates(candidates, present, follow)
         steps.append(step(candidates, present, trial_round.trials))
         completed.append(Selected(candidates, present, list(steps)))
         may_update = updates < policy.terms.max_updates
         update, extended = None, present
         candidates.tell("reviewing the model", 0, 0)
+        # Some terms of the observation model compete with the leading effect.
         if trial_round.leader is not None:
             least = _evidence_of_leader(candidates, present, trial_round)
             update = best_term_update(candidates, present, least) if may_update else None
@@ -150,11 +155,10 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 richer = (*present, trial_round.leader)
                 again = re_estimated_motion(candidates, richer)
                 if again is not None:
-                    candidates, visited = (
-                        candidates.with_campaign(again, richer),
-                        {frozenset(present)},
-                    )
+                    candidates = candidates.with_campaign(again, richer)
+                    visited = {frozenset(present)}
                 extended = _with_leader(candidates, present, trial_round)
+        # Where no effect is added, all terms are tried.
         ended = frozenset(extended) in visited
         if update is None and ended and follow == "promising" and may_update:
             update = best_term_update(candidates, present)
@@ -164,8 +168,10 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             kept = tuple(n for n in present if n in update.effects)
             present = reconsider(candidates, still_needed(candidates, kept))
             visited, follow = {frozenset(present)}, "promising"
+            # The model is tested again with the term: its step replaces the last one.
             steps.pop()
             continue
+        # With residual structure, candidates with a small score are fitted, then pairs of them.
         if ended and follow == "promising" and remainder_of(candidates, present):
             follow = "all"
             steps.pop()
@@ -201,7 +207,7 @@ def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...
 
 
 def _with_leader(candidates: Candidates, present: Names, trial_round: Round) -> Names:
-    """Add the effect selected in a round, and remove effects that become unnecessary.
+    """Return the model with the effect selected in a round, without unnecessary effects.
 
     A candidate that is tied with the leader is used instead if the resulting model has fewer
     effects or parameters and predicts held-out runs equally well.
@@ -265,9 +271,10 @@ def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
 def _promising(candidates: Candidates, present: Names) -> list[str]:
     """Candidate effects with the largest score statistics relative to the present model."""
     near = candidates.converge(present)
-    names = [n for n in candidates.names if n not in present and can_be_added(n, present)]
-    candidates.score_all([(*present, name) for name in names], near)
-    scores = {name: candidates.score_test((*present, name), near) for name in names}
+    names = candidates.addable(present)
+    scores = dict(
+        zip(names, candidates.score_all([(*present, n) for n in names], near), strict=True)
+    )
     finite = [name for name in names if np.isfinite(scores[name])]
     return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.search.paired]
 

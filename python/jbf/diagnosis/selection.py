@@ -55,14 +55,14 @@ class Ranked:
         Name of the candidate.
     solution
         The solution with this evidence.
-    most
+    limit
         Upper limit of the evidence if the fit was not continued; infinite otherwise.
     """
 
     evidence: float
     effect: str
     solution: Solution
-    most: float = np.inf
+    limit: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -92,9 +92,9 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     candidates, present
         Cached fits, and the effects of the present model.
     follow
-        Candidates to fit: those that may have the largest evidence after a few steps (`promising`),
-        those with a sufficient score (`shown`), or all. For a strong effect, the score at its null
-        may be uninformative.
+        Candidates to fit: those with a sufficient score (`shown`), of these only the ones that may
+        still lead after a few steps (`promising`), or all. For a strong effect, the score at its
+        null may be uninformative.
     """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
@@ -114,10 +114,12 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         if gain <= 0.0 and gain > candidates.level.significant - price_of(candidates, 1):
             outcome = "negligible"
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
-        if np.isfinite(candidate.most):
+        if np.isfinite(candidate.limit):
             outcome = "rejected"
-            limit = max(candidate.most, 0.0)
-            reason = f"skipped: its largest possible evidence is {limit:.0f}, too little to lead"
+            reason = (
+                f"skipped: its largest possible evidence is {max(candidate.limit, 0.0):.0f}, "
+                "too little to lead"
+            )
         elif gain > 0 and leader is None:
             confirmation = candidates.confirmation(present, name)
             alone = evidence_on_common_samples(candidates, candidate.solution, base)
@@ -141,8 +143,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "rejected"
             reason = f"evidence is {best - gain:.0f} below that of {leader}"
         trials.append(Trial(name, rms, float(gain), outcome, reason, name in unconfirmed))
-    behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
-    if behind > best:
+    if max((r.limit for r in ranked if np.isfinite(r.limit)), default=-np.inf) > best:
         # The leader that these candidates were compared with was not accepted.
         return try_candidates(candidates, present, "shown")
     if leader is None:
@@ -163,7 +164,9 @@ def _by_units(
     """
     base = candidates.converge(present)
     gains = {
-        r.effect: full_gain(candidates, r.solution, base) for r in ranked if not np.isfinite(r.most)
+        r.effect: full_gain(candidates, r.solution, base)
+        for r in ranked
+        if not np.isfinite(r.limit)
     }
     for name in sorted(gains, key=lambda name: -gains[name])[: candidates.policy.search.leaders]:
         if gains[name] > 0.0 and units_confirm(candidates, present, name):
@@ -228,49 +231,51 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     The fits of competitive candidates are converged.
     """
     policy = candidates.policy
-    rivals = [n for n in candidates.names if n not in present and can_be_added(n, present)]
-    candidates.score_all([(*present, name) for name in rivals], base)
-    scores = {name: candidates.score_test((*present, name), base) for name in rivals}
+    rivals = candidates.addable(present)
+    scores = dict(
+        zip(rivals, candidates.score_all([(*present, n) for n in rivals], base), strict=True)
+    )
     candidates.calibrate(present)
     share = candidates.independent_share(base)
     least = policy.search.min_score_share * price_of(candidates, 1)
     # In a correlated residual a sample is less informative, and any candidate has a small gain.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
-    first = dict.fromkeys(rivals, -np.inf)
-    behind = _limits_below_leader(candidates, present, shown, base) if follow == "promising" else {}
-    followed = [name for name in shown if name not in behind]
+    approximate = dict.fromkeys(rivals, -np.inf)
+    limits = _limits_below_leader(candidates, present, shown, base) if follow == "promising" else {}
+    followed = [name for name in shown if name not in limits]
     candidates.rank_all([(*present, name) for name in followed], base)
     for name in followed:
-        first[name] = evidence(candidates, candidates.rank((*present, name)), base)
+        approximate[name] = evidence(candidates, candidates.rank((*present, name)), base)
     line = (
-        policy.search.rank_fraction * max(max(first.values(), default=0.0), 0.0)
+        policy.search.rank_fraction * max(max(approximate.values(), default=0.0), 0.0)
         - policy.search.rank_margin
     )
     ranked: list[Ranked] = []
     for name in rivals:
         effects = (*present, name)
-        if name in behind:
+        if name in limits:
             solution = candidates.look(effects, base).current_solution()
-        elif first[name] == -np.inf:
+        elif approximate[name] == -np.inf:
             solution = base
         else:
             solution = candidates.rank(effects)
             promised = (
-                first[name] + policy.search.step_gain_factor * next_step_gain(solution) * share
+                approximate[name]
+                + policy.search.step_gain_factor * next_step_gain(solution) * share
             )
-            if first[name] > line and promised > 0.0:
+            if approximate[name] > line and promised > 0.0:
                 solution = candidates.converge(effects)
         # At the null an effect does not change the model, which gives a lower bound of the
         # evidence.
         more = len(candidates.fitted(effects).problem.open) - base.free
         gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
-        ranked.append(Ranked(gain, name, solution, behind.get(name, np.inf)))
+        ranked.append(Ranked(gain, name, solution, limits.get(name, np.inf)))
     ranked.sort(key=lambda r: -r.evidence)
     # Search other maxima of the likelihood for competitive candidates.
     for i, r in enumerate(ranked):
         effects = (*present, r.effect)
         likely = max(policy.search.min_peaks_fraction * ranked[0].evidence, 0.0)
-        if many_peaks(effects) and r.evidence > likely and r.effect not in behind:
+        if many_peaks(effects) and r.evidence > likely and r.effect not in limits:
             solution = candidates.search_peaks(effects)
             ranked[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
     # Of two indistinguishable effects, prefer the later stage of the measuring chain.
@@ -281,7 +286,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
 def _limits_below_leader(
     candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
 ) -> dict[str, float]:
-    """Upper limits of the evidence of candidates that cannot have the largest evidence."""
+    """Upper limits of the gain, and thus evidence, of candidates that cannot lead, by name."""
     policy = candidates.policy
     candidates.look_all([(*present, name) for name in shown], base)
     looked = {name: candidates.look((*present, name), base) for name in shown}
@@ -322,12 +327,7 @@ def start_model(candidates: Candidates) -> Names:
         present = (*present, name)
         candidates.look(present, near)
         candidates.converge(present)
-    for name in present:
-        rest = tuple(e for e in present if e != name)
-        simpler = candidates.refit_from(rest, present)
-        if not needed(candidates, present, name, simpler):
-            present = rest
-    return present
+    return still_needed(candidates, present)
 
 
 def reconsider(

@@ -124,6 +124,10 @@ class Problem:
                 values[i] -= page.period * np.round(values[i] / page.period)
         return values
 
+    def values_by_name(self, values: Array) -> dict[str, float]:
+        """Return parameter values by name."""
+        return dict(zip(self.names, values.tolist(), strict=True))
+
     def starts(self, seed: Mapping[str, float]) -> list[Array]:
         """All combinations of starting values of the parameters for which `seed` has no value."""
         choices = [

@@ -159,7 +159,7 @@ def without_further_transients(problem: Problem, solution: Solution) -> Campaign
         return None
     campaign = problem.campaign
     nested = Problem(campaign, problem.law, problem.clock, lasting)
-    values_by_name = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    values_by_name = problem.values_by_name(solution.values)
     values = np.array([values_by_name[name] for name in nested.names])
     reduced = _without_unrecorded(nested, values, solution.residuals)
     excluded = campaign.samples.count - reduced.samples.count

@@ -23,7 +23,6 @@ from jbf.diagnosis.power.distinction import (
 )
 from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
-from jbf.models.catalogue import can_be_added
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
@@ -121,8 +120,7 @@ def power(
     runs = PresentRuns(candidates, present)
     models = {
         name: model
-        for name in candidates.names
-        if name not in present and can_be_added(name, present)
+        for name in candidates.addable(present)
         if (model := strength_of(candidates, present, name)) is not None
     }
     limits = in_parallel(

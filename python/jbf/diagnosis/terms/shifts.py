@@ -107,7 +107,7 @@ def fitted_to_shifted(
     start_values: dict[str, float],
     near: Solution,
 ) -> tuple[Problem, Solution]:
-    """Fit a law with effects to shifted runs by a few steps."""
+    """Fit a law with effects to the shifted runs of `campaign` by a few steps."""
     again = Problem(campaign, problem.law, problem.clock, effects)
     start = np.array([start_values[name] for name in again.names])
     samples = again.samples_at(start)
@@ -142,7 +142,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             now = _with_coloured_noise(now)
             continue
         # Where delays differ between runs, a common delay is also attributed to the recording.
-        values = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
+        values = now.problem.values_by_name(now.solution.values)
         later_s = np.clip(step.delays_s, -linear_s, linear_s) + values.get(TAU, 0.0)
         late_s = now.late_s + later_s
         late_s[~step.identifiable] = step.mean_s(late_s)
@@ -182,7 +182,7 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
         late_s = 0.5 * drift * lasts_s
         if not possible_clocks(first, late_s, drift):
             return start
-        values = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
+        values = now.problem.values_by_name(now.solution.values)
         campaign = moved(first, late_s, drift)
         problem, solution = fitted_to_shifted(
             now.problem, campaign, now.problem.effects, values, now.solution
@@ -198,7 +198,7 @@ def with_mean_delay(shifted: Shifted) -> Shifted:
     problem, solution = shifted.problem, shifted.solution
     mean_s = run_delay_step(problem, solution).mean_s(shifted.late_s)
     change_s = mean_s - shifted.late_s
-    values = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    values = problem.values_by_name(solution.values)
     campaign = moved(problem, change_s, 0.0)
     again, fit = fitted_to_shifted(problem, campaign, problem.effects, values, solution)
     return Shifted(again, fit, np.full(len(change_s), mean_s), shifted.drift)
@@ -224,7 +224,7 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
         if scan is None:
             break
         # Where delays differ between runs, a common delay is also attributed to the recording.
-        values = dict(zip(problem.names, solution.values.tolist(), strict=True))
+        values = problem.values_by_name(solution.values)
         shared = values.get(TAU, 0.0) if scan.spread_s > 0.0 else 0.0
         later_s, drifted = late_s + np.array(scan.delays_s) + shared, drift + scan.drift
         if look > 0 and scan.drift != 0.0 and scan.spread_s == 0.0:
@@ -253,9 +253,7 @@ def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     effects = without_delay(problem.effects)
     late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
     last = Problem(shifted.campaign, problem.law, problem.clock, effects)
-    start_values = dict(zip(last.names, shifted.solution.values.tolist(), strict=True)) | {
-        TAU: ahead_s
-    }
+    start_values = {**last.values_by_name(shifted.solution.values), TAU: ahead_s}
     start = np.array([start_values[name] for name in late.names])
     samples = late.samples_at(start)
     values = search(late, samples, start, shifted.solution.noise, EVALUATIONS).values
@@ -264,7 +262,7 @@ def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     if not possible_clocks(problem, late_s, 0.0):
         return shifted
     campaign = moved(problem, late_s, 0.0)
-    near = dict(zip(late.names, values.tolist(), strict=True))
+    near = late.values_by_name(values)
     again, solution = fitted_to_shifted(problem, campaign, effects, near, shifted.solution)
     if solution.rms >= shifted.solution.rms:
         return shifted

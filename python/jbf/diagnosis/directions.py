@@ -160,10 +160,10 @@ class RichestResidual:
         return cls(noise, independent_share(parts, samples.steps_s, samples.settings.noise))
 
 
-def _explained(basis: Array, target: Array) -> Array:
-    """Projection of `target` on the span of unit columns `basis`, which may be collinear."""
-    size, axes = np.linalg.eigh(basis.T @ basis)
+def _explained(columns: Array, target: Array) -> Array:
+    """Projection of `target` on the span of unit `columns`, which may be collinear."""
+    size, axes = np.linalg.eigh(columns.T @ columns)
     resolved = size > 1e-12 * size[-1]
-    step = axes[:, resolved] @ ((axes[:, resolved].T @ (basis.T @ target)) / size[resolved])
-    explained: Array = basis @ step
+    step = axes[:, resolved] @ ((axes[:, resolved].T @ (columns.T @ target)) / size[resolved])
+    explained: Array = columns @ step
     return explained

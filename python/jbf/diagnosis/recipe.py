@@ -275,6 +275,7 @@ def _with_law(
     campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
+    # The start model, and for a drive the errors of its motion.
     base = start_model(candidates)
     with_motion_errors = with_errors_of_motion(candidates, base)
     if with_motion_errors is not None:
@@ -282,6 +283,8 @@ def _with_law(
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, of_selection = selected.present, selected.steps, selected.remainders
+    # Effects that are not named, and the final model: with or without them, whichever predicts
+    # better.
     with campaign.work.untimed():
         before = _before(candidates)
         remains = (*remainder_of(candidates, present), *of_selection)
@@ -299,32 +302,34 @@ def _with_law(
     uncertain = effects_without_estimate(fit.parameters, missing, policy)
     doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
     steps = with_final_outcomes(steps, present, doubted)
+    # Alternatives to the named effects, and the verdict.
     optional = OptionalParts(candidates.tell)
-    every: dict[str, dict[str, float]] = optional.of(
+    all_weights: dict[str, dict[str, float]] = optional.of(
         ALTERNATIVES, lambda: weights(candidates, named), {}
     )
     if missing and selected.finished and ALTERNATIVES in optional.omitted:
         where = f"{optional.omitted[ALTERNATIVES]}; alternatives to the effects were not tested"
         remains = (*remains, Remainder(SEARCH, where, 0.0))
     weighted = (*missing, OFFSET)
-    posterior = {name: w for name, w in every.items() if name in weighted}
-    equal = {name: tuple(w)[1:] for name, w in posterior.items()}
-    tied = {name: others for name, others in equal.items() if others and name in missing}
+    posterior = {name: w for name, w in all_weights.items() if name in weighted}
+    alternatives = {name: tuple(w)[1:] for name, w in posterior.items()}
+    tied = {name: others for name, others in alternatives.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))
+    # Detection limits, a simpler law and the next experiment.
     limits_of_runs: tuple[tuple[Power, ...], Names] = ((), ())
     if not remains:
         limits_of_runs = optional.of(POWER, lambda: _power(candidates, present), limits_of_runs)
     elif all(remainder.unfinished for remainder in remains):
         optional.omitted[POWER] = next(iter((selected.not_tried | optional.omitted).values()))
-    strengths, hidden = limits_of_runs
-    instead = None
+    strengths, undetectable = limits_of_runs
+    simpler = None
     if given and (len(missing) > 1 or remains):
-        instead = optional.of(SIMPLER_LAWS, lambda: simpler_law(candidates, kept, clock), None)
+        simpler = optional.of(SIMPLER_LAWS, lambda: simpler_law(candidates, kept, clock), None)
     proposal: Experiment | str | None = None
-    if answer == "adequate" and hidden:
+    if answer == "adequate" and undetectable:
         proposal = optional.of(
             NEXT_EXPERIMENT,
-            lambda: propose_detection_run(candidates, present, hidden, limits),
+            lambda: propose_detection_run(candidates, present, undetectable, limits),
             None,
         )
     if tied:
@@ -334,7 +339,7 @@ def _with_law(
         verdict=answer,
         effects=missing,
         machine=machine_of(candidates.campaign.rig, kept),
-        alternatives=equal,
+        alternatives=alternatives,
         weights=posterior,
         steps=tuple(steps),
         failures=before.failures,
@@ -348,11 +353,11 @@ def _with_law(
         level=candidates.level,
         not_tried=candidates.not_tried | selected.not_tried | optional.omitted,
         unfinished=(*selected.not_tried, *optional.omitted),
-        not_detectable=hidden,
+        not_detectable=undetectable,
         policy=policy,
         findings=candidates.campaign.findings,
         confounders=tuple(name for name in doubted if name in kept),
-        simpler_law=instead,
+        simpler_law=simpler,
         power=strengths,
         limitations=limitations(recorded, _values(fit), policy),
     )

@@ -86,7 +86,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
     at_once = fits_at_once(problem.campaign, problem.law, problem.effects)
     ends = list(in_parallel(iterated, clocks, at_once))
-    # Steps in the delay may increase the deviance.
+    # Steps in the delay may increase the deviance: fit again without them.
     late = [c for c, end in zip(clocks, ends, strict=True) if end.delayed]
     ends += in_parallel(lambda clock_s: iterated(clock_s, delays=False), late, at_once)
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
@@ -94,6 +94,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     motion = best.solution.samples.motion
     if motion is None:
         return best.problem, best.solution
+    # Keep the fit without errors of the motion if that with small ones has a much larger RMS.
     settings = problem.campaign.settings
     share = motion.mean_share(best.solution.samples.weight)
     large = share > settings.conditions.max_motion_share
@@ -148,7 +149,7 @@ def _near(problem: Problem, solution: Solution) -> Solution:
 
 @dataclass(frozen=True, eq=False)
 class _ClockFit:
-    """A generalised least-squares fit with the force on one clock.
+    """End of the iteration of a fit with the force on one clock.
 
     Attributes
     ----------
@@ -159,7 +160,7 @@ class _ClockFit:
     delayed
         Whether a delay of the force was estimated.
     clock_s, late_s
-        Delay of the clock of the force, and the total delay, s.
+        Delay of the clock of the force, and the total delay of the force, s.
     """
 
     first: Problem
@@ -302,44 +303,44 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
     lowest = float(np.clip(np.log(max(smallest, 1e-150) / most), LEAST_NOISE, 0.0))
     count = sum(int(np.count_nonzero(w)) for w in weights)
 
-    def at(ratio: float, noise: float) -> ErrorsInMotion:
+    def at(log_ratio: float, log_noise: float) -> ErrorsInMotion:
         """Errors of the motion with the logarithms of scale / noise and of noise / RMS."""
-        scale = float(np.exp(ratio + noise))
-        return replace(motion, noise=most * float(np.exp(noise)), scale=scale)
+        scale = float(np.exp(log_ratio + log_noise))
+        return replace(motion, noise=most * float(np.exp(log_noise)), scale=scale)
 
-    def profiled(ratio: float) -> tuple[float, float]:
-        """Smallest penalised deviance for a given logarithm of scale / noise, and its noise.
+    def profiled(log_ratio: float) -> tuple[float, float]:
+        """Smallest penalised deviance for a logarithm of scale / noise, and that of noise / RMS.
 
         The filter depends on the ratio only, and the deviance is convex in the logarithm of the
         noise.
         """
-        unit = at(ratio, 0.0).whitening(weights)
+        unit = at(log_ratio, 0.0).whitening(weights)
         squares = unit.deviance(solution.residuals) - unit.log_determinant
 
-        def penalised(noise: float) -> float:
+        def penalised(log_noise: float) -> float:
             """Penalised deviance at the logarithm of noise / RMS."""
-            deviance = squares * float(np.exp(-2.0 * noise)) + 2.0 * count * noise
-            return deviance + unit.log_determinant + _prior(problem, ratio + noise)
+            deviance = squares * float(np.exp(-2.0 * log_noise)) + 2.0 * count * log_noise
+            return deviance + unit.log_determinant + _prior(problem, log_ratio + log_noise)
 
-        bounds = max(lowest, -MOST_SCALE - ratio), min(MOST_NOISE, MOST_SCALE - ratio)
+        bounds = max(lowest, -MOST_SCALE - log_ratio), min(MOST_NOISE, MOST_SCALE - log_ratio)
         found = optimize.minimize_scalar(penalised, bounds=bounds, method="bounded")
         return float(found.fun), float(found.x)
 
     # A second minimum exists at low noise, where the motion's errors explain the whole residual.
-    ratios = np.linspace(-MOST_SCALE - MOST_NOISE, MOST_SCALE - lowest, RATIOS + 2)
-    least = 1 + int(np.argmin([profiled(ratio)[0] for ratio in ratios[1:-1]]))
+    log_ratios = np.linspace(-MOST_SCALE - MOST_NOISE, MOST_SCALE - lowest, RATIOS + 2)
+    least = 1 + int(np.argmin([profiled(log_ratio)[0] for log_ratio in log_ratios[1:-1]]))
     found = optimize.minimize_scalar(
-        lambda ratio: profiled(ratio)[0],
-        bounds=(ratios[least - 1], ratios[least + 1]),
+        lambda log_ratio: profiled(log_ratio)[0],
+        bounds=(log_ratios[least - 1], log_ratios[least + 1]),
         method="bounded",
         options={"xatol": RATIO_STEP},
     )
     return at(float(found.x), profiled(float(found.x))[1])
 
 
-def _prior(problem: Problem, scale: float) -> float:
+def _prior(problem: Problem, log_scale: float) -> float:
     """Minus twice the log prior density of the logarithm of the scale of the motion's errors."""
-    return (scale / problem.campaign.settings.motion.scale_prior) ** 2
+    return (log_scale / problem.campaign.settings.motion.scale_prior) ** 2
 
 
 def _penalised(

@@ -77,7 +77,6 @@ class Look:
         Log-likelihood gain (2 x difference of log likelihood) reached so far.
     promised
         Log-likelihood gain predicted by the linear model at the best of the visited points.
-
     lines
         Residuals and Jacobian at these values; None if they were not stored.
     """
@@ -208,8 +207,7 @@ class Approach:
         evaluations
             Maximum number of evaluations; enough to rank candidates, or to converge.
         max_square
-            Upper limit of the sum of squares, N^2, after the first steps; otherwise the search is
-            not continued.
+            Sum of squares after the first steps, N^2, from which the search is not continued.
         followed, steps, method
             Number of starting points, number of evaluations for each of them before only the best
             search is continued, and method of these first searches.

@@ -91,7 +91,8 @@ def _estimates(model: Model) -> list[Shifted]:
         by_run = fit_delays_by_run(problem, start)
         estimates.append(by_run if _significant(by_run, policy) else with_mean_delay(by_run))
     if not known_delays(problem.campaign):
-        # The model parameters compensate for a drift: use a less strict significance level.
+        # The model parameters compensate for a drift: test it at a less strict significance level
+        # before it is fitted (`_significant` tests it again afterwards).
         if special.chdtrc(1, drift_step(problem, solution).square) < policy.delays.hint_chance:
             estimates.append(fit_clock_drift(problem, start))
         coarse = fit_delays_by_search(problem, solution, policy)
@@ -145,9 +146,8 @@ def _gain(shifted: Shifted, other: Solution, share: float) -> float:
     after = samples.without_deviations(solution.residuals, solution.noise)
     before = other.samples.without_deviations(other.residuals, other.noise)
     ratio = other.samples.rms(before) / max(samples.rms(after), 1e-300)
-    return 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300))) - _log_determinant(
-        shifted
-    )
+    gain = 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300)))
+    return gain - _log_determinant(shifted)
 
 
 def _log_determinant(shifted: Shifted) -> float:

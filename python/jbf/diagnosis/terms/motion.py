@@ -39,6 +39,7 @@ def errors_of_motion(model: Model) -> Proposal | None:
     before, motion = campaign.samples.motion, after.samples.motion
     if before is None and motion is None:
         return None
+    # Either likelihood may be that of a recording without errors of the motion.
     old, new = before or _without_errors(solution), motion or _without_errors(after)
     ratio = max(old.noise / new.noise, solution.rms / max(after.rms, 1e-150))
     if before is not None and ratio < model.policy.motion.min_noise_ratio:
@@ -48,7 +49,7 @@ def errors_of_motion(model: Model) -> Proposal | None:
     gain -= new.whitening(weights_after).deviance(after.residuals)
     held_out = _held_out_deviance(model.problem, solution, old, weights_before)
     held_out -= _held_out_deviance(again, after, new, weights_after)
-    # A problem with a shifted force has samples of its own.
+    # If the delay changed, the samples of `again` differ from those of `campaign`.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
     return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2), held_out)
 

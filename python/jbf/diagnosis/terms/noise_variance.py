@@ -56,12 +56,8 @@ def _weighted(
     parameters: int,
 ) -> Proposal | None:
     """Propose weights from a variance function; None if the campaign already has them."""
-    problem, solution, campaign, policy = (
-        model.problem,
-        model.solution,
-        model.campaign,
-        model.policy,
-    )
+    problem, solution, policy = model.problem, model.solution, model.policy
+    campaign = model.campaign
     if any(f.kind == kind for f in campaign.more_findings):
         return None
     estimate = weights(problem, solution, policy)
@@ -87,12 +83,8 @@ def heavy_tails(model: Model) -> Proposal | None:
 
     Returns None if the heavy tails are due to the quantisation steps of a converter.
     """
-    problem, solution, campaign, policy = (
-        model.problem,
-        model.solution,
-        model.campaign,
-        model.policy,
-    )
+    problem, solution, policy = model.problem, model.solution, model.policy
+    campaign = model.campaign
     if any(f.kind == "heavy_tails" for f in campaign.more_findings):
         return None
     if campaign.step_n >= policy.noise.max_step_ratio * solution.rms:

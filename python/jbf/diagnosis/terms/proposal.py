@@ -102,7 +102,8 @@ def price_of_term(policy: Policy, parameters: int = 1) -> float:
 def independent_fraction(after: Solution, before: Solution) -> float:
     """Effective number of samples in the gain of a term, divided by the number of samples.
 
-    It is computed as for an effect (`share_of_gain`).
+    It differs from that of an effect (`share_of_gain`): each model has its own samples and random
+    effects, since a term changes them.
     """
     after_errors, before_errors = (
         s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before)

@@ -106,13 +106,13 @@ class Samples:
             weight=tuple(w * m for w, m in zip(self.weight, masks, strict=True)),
         )
 
-    def weighed(
+    def with_factors(
         self,
         level: Sequence[Array],
         robust: Sequence[Array],
         between: RandomEffects | None,
     ) -> Samples:
-        """Return the samples with other weights and random effects.
+        """Return a copy with the weights multiplied by factors, and with other random effects.
 
         Parameters
         ----------
@@ -134,8 +134,8 @@ class Samples:
             return self
         return self.within([self.motion.variance_ratio(i) <= 1.0 for i in range(len(self.runs))])
 
-    def tested(self) -> Samples:
-        """Return a copy in which the excluded samples have zero weight."""
+    def counted_only(self) -> Samples:
+        """Return a copy with zero weight at the excluded samples, some of which a fit uses."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))
         return replace(self, weight=weight)
 

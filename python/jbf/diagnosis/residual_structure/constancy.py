@@ -88,7 +88,7 @@ def disagreement(
         many peaks.
     """
     # Samples next to a jump with a fitted time contain the error of this time; they are excluded.
-    samples = solution.samples.tested()
+    samples = solution.samples.counted_only()
     aside = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
     if samples.between is not None:
         # Parameters with a known variance between runs are not tested.
@@ -185,7 +185,7 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
 
     The reported difference is one Gauss-Newton step in this parameter alone.
     """
-    samples = solution.samples.tested()
+    samples = solution.samples.counted_only()
     i = samples.runs.index(run)
     r, j = samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
     size = np.linalg.norm(j, axis=0)

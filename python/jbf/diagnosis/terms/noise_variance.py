@@ -65,7 +65,7 @@ def _weighted(
         return None
     levels, finding = estimate
     ones = [np.ones(len(w)) for w in levels]
-    samples = campaign.samples.weighed(levels, ones, campaign.samples.between)
+    samples = campaign.samples.with_factors(levels, ones, campaign.samples.between)
     counted = solution.samples.counted
     after = refitted(problem, solution, samples.within(counted))
     before = campaign.samples.within(counted)
@@ -94,7 +94,7 @@ def heavy_tails(model: Model) -> Proposal | None:
         return None
     weights, finding, gain = estimate
     ones = [np.ones(len(w)) for w in weights]
-    samples = campaign.samples.weighed(ones, weights, campaign.samples.between)
+    samples = campaign.samples.with_factors(ones, weights, campaign.samples.between)
     after = refitted(problem, solution, samples.within(solution.samples.counted))
     again = replace(campaign, samples=samples).with_findings([finding])
     gain *= effective_share(solution)

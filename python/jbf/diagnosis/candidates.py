@@ -197,16 +197,15 @@ class Candidates:
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
-            thinned = self.fitted(present).problem.thinned
-            self.residual = residual = RichestResidual.of(directions, thinned.campaign.samples)
+            searched = self.fitted(present).problem.thinned.campaign.samples
+            self.residual = residual = RichestResidual.of(directions, searched)
             if residual is not None:
                 directions = [replace(d, share=max(d.share, residual.share)) for d in directions]
             level = calibrated(self._white_noise_level(present), directions, residual)
-            level = with_decoys(level, directions, self.campaign.samples.count)
-            self._levels[key] = (level, residual)
-            # These arrays are as large as the records and are not needed again.
+            count = self.campaign.samples.count
+            self._levels[key] = (with_decoys(level, directions, count), residual)
             for fitted in self._fitted.values():
-                fitted.directions = None
+                fitted.directions = None  # These arrays are as large as the records.
         self._level, self.residual = self._levels[key]
 
     def _white_noise_level(self, present: Sequence[str]) -> Level:

@@ -28,7 +28,7 @@ def machine_of(rig: Rig, present: Iterable[str]) -> Names:
 
 
 def is_inertial(rig: Rig, name: str) -> bool:
-    """Whether an effect is the inertia or the weight of a drive, which exist in any machine."""
+    """Whether an effect is the inertia or the weight of a drive."""
     return rig.drive is not None and name in TERMS and name != OFFSET
 
 

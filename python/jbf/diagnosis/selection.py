@@ -194,7 +194,7 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 
     If another effect is missing, the residual may be so correlated that no effect has evidence. An
     effect is needed even then if independent units confirm it, or if the held-out error is larger
-    without it. The inertia and the weight of a drive exist and need a gain only.
+    without it.
     """
     full = candidates.converge(current)
     if evidence(candidates, full, simpler) >= 0.0:
@@ -202,7 +202,7 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
     if full_gain(candidates, full, simpler) <= 0.0:
         return False
     rest = tuple(e for e in current if e != name)
-    if is_inertial(candidates.campaign.rig, name) or units_confirm(candidates, rest, name):
+    if units_confirm(candidates, rest, name):
         return True
     least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
     return candidates.held_out_rms(rest) > least

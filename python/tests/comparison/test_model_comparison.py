@@ -53,6 +53,7 @@ def test_standard_error_is_that_of_paired_differences_over_runs() -> None:
     assert compared.models[1].stderr < 0.8 * unpaired
 
 
+@pytest.mark.extended
 def test_interval_of_the_rms_difference_covers_the_true_difference_in_34_of_40_cases() -> None:
     covered, expected = 0, np.hypot(NOISE_N, 0.1) - NOISE_N
     for seed in range(40):

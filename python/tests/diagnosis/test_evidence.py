@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from by_hand import assert_recovered, coulomb, four_runs
+from by_hand import Array, assert_recovered, coulomb, four_runs
 from jbf import Diagnosis, Rig, Run
 from jbf.diagnosis import Trial
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, price_of
@@ -139,6 +139,25 @@ def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -
     assert anywhere == pytest.approx(gain * effective_share(rich) - price)
     assert found < 0.0 < anywhere <= gain - price
     assert evidence(candidates, simple, rich) == pytest.approx(-gain - price_of(candidates, -1))
+
+
+def test_residual_of_a_missing_candidate_does_not_reduce_the_share_of_independent_samples() -> None:
+    """White noise, and a drift of the sensor or a wave that no candidate describes."""
+
+    def drift(t: Array) -> Array:
+        return 0.5 * t
+
+    def wave(t: Array) -> Array:
+        return np.asarray(np.sin(2.0 * np.pi * t / 4.0))
+
+    for slow, least, most in ((drift, 0.9, 1.0), (wave, 0.0, 0.1)):
+        runs = four_runs(lambda t, v, a, f=slow: coulomb(t, v, a) + f(t), noise_rms=0.02)
+        candidates = coulomb_candidates(runs)
+        base = candidates.converge(())
+        assert candidates.independent_share(base) < 0.1
+        candidates.score_all([(name,) for name in candidates.names], base)
+        candidates.calibrate(())
+        assert least <= candidates.independent_share(base) <= most
 
 
 @pytest.mark.parametrize(("offset_n", "needs"), [(0.0, False), (0.2, True)])

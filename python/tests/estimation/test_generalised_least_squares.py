@@ -1,12 +1,17 @@
 """Fits that account for the errors of the motion and a delay of the force."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf import Rig, Run, fit
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.generalised_least_squares import estimate_motion_errors
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.records.motion.estimated_motion import estimate_motion
 
@@ -66,7 +71,7 @@ def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:
 
 
 def drawn_residual(
-    errors: Any, sensitivity: Any, scale: float, random: np.random.Generator
+    errors: Any, sensitivity: Any, scale: float, random: np.random.Generator, noise: float = NOISE
 ) -> npt.NDArray[np.float64]:
     """Noise and motion errors, which are drawn backward along the Markov chain of the posterior."""
     n = len(errors.covariance)
@@ -77,7 +82,7 @@ def drawn_residual(
             gain = errors.gain[k]
             covariance = errors.covariance[k] - gain @ errors.covariance[k + 1] @ gain.T
             state = gain @ state + random.multivariate_normal(np.zeros(3), covariance, method="svd")
-        residual[k] = scale * (sensitivity[k] @ state) + random.normal(0.0, NOISE)
+        residual[k] = scale * (sensitivity[k] @ state) + random.normal(0.0, noise)
     return residual
 
 
@@ -114,3 +119,32 @@ def test_likelihood_is_maximal_at_the_simulated_scale_of_the_motion_errors(
     ]
     assert abs(int(np.argmin(deviances)) - 2) <= 1
     assert min(deviances[0], deviances[-1]) > min(deviances) + 10.0
+
+
+@pytest.mark.parametrize(("noise", "scale"), [(0.1, 1.0), (0.02, 2.5), (0.002, 1.0)])
+def test_estimated_noise_and_scale_of_motion_errors_have_the_largest_likelihood(
+    noise: float, scale: float
+) -> None:
+    """The noise is well determined only where it is as large as the errors of the motion."""
+    campaign = Campaign.prepare(Rig(), [drive(3)])
+    problem = Problem(campaign, "coulomb", "journal", ("inertia",))
+    values = np.array([TRUE.get(name, COULOMB) for name in problem.names])
+    exact, samples = problem.solution(values, campaign.samples, WHITE), campaign.samples
+    sensitivity = estimate_motion_errors(problem, exact).sensitivity[0]
+    (p,) = campaign.prepared
+    random = np.random.default_rng(4)
+    drawn = drawn_residual(p.motion.errors, sensitivity, scale, random, noise)
+    force = problem.predict(values)[0] + drawn
+    simulated = problem.with_campaign(
+        dataclasses.replace(campaign, prepared=(dataclasses.replace(p, friction=force),))
+    )
+    solution = simulated.solution(values, samples, WHITE)
+    found = estimate_motion_errors(simulated, solution)
+    true = ErrorsInMotion(found.errors, found.sensitivity, noise, scale)
+    deviances = [
+        motion.whitening(samples.weight).deviance(solution.residuals) for motion in (found, true)
+    ]
+    assert deviances[1] - 8.0 < deviances[0] < deviances[1]
+    assert found.scale == pytest.approx(scale, rel=0.05)
+    if noise > NOISE:
+        assert found.noise == pytest.approx(noise, rel=0.05)

@@ -27,11 +27,6 @@ def machine_of(rig: Rig, present: Iterable[str]) -> Names:
     return () if rig.drive is None else tuple(name for name in present if name in TERMS)
 
 
-def is_inertial(rig: Rig, name: str) -> bool:
-    """Whether an effect is the inertia or the weight of a drive."""
-    return rig.drive is not None and name in TERMS and name != OFFSET
-
-
 def with_errors_of_motion(candidates: Candidates, base: Names) -> Campaign | None:
     """Return a drive's campaign with the covariance of the motion's errors in the likelihood.
 

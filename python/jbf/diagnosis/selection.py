@@ -16,7 +16,7 @@ import numpy as np
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
-from jbf.diagnosis.drive import TERMS, is_inertial, machine_of
+from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
 from jbf.diagnosis.evidence import (
     evidence,
     evidence_on_common_samples,
@@ -362,7 +362,7 @@ def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozense
         if not needed(candidates, current, name, simpler):
             current = rest
             continue
-        if is_inertial(candidates.campaign.rig, name):
+        if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
             continue  # inertia and weight do not imitate an effect; an offset may
         others = [
             other

@@ -11,6 +11,7 @@ from .contact import Path
 from .motions import Motion, Piece
 
 RTOL, ATOL = 1e-9, 1e-11
+DONE = "Integration successful."
 TIGHT = 1e-9  # s; instants closer than this are treated as one
 
 
@@ -75,18 +76,22 @@ def run_rigid(
             v, a = piece.speed(t), piece.acceleration(t)
             return chain.rates(state, v, piece.sign, a, trip.at(piece, t))
 
-        states, info = odeint(
-            rates,
-            y,
-            grid,
-            tfirst=True,
-            rtol=RTOL,
-            atol=absolute,
-            tcrit=[piece.t1 + 1e-7],
-            mxstep=100_000,
-            full_output=True,
-        )
-        if info["message"] != "Integration successful.":
+        # LSODA refuses a piece if rounding carries its last step beyond the end: move the end.
+        for beyond in (1e-7, 2e-7):
+            states, info = odeint(
+                rates,
+                y,
+                grid,
+                tfirst=True,
+                rtol=RTOL,
+                atol=absolute,
+                tcrit=[piece.t1 + beyond],
+                mxstep=100_000,
+                full_output=True,
+            )
+            if info["message"] == DONE:
+                break
+        if info["message"] != DONE:
             raise RuntimeError(f"{motion.name}, piece from {piece.t0} s: {info['message']}")
         rows = np.searchsorted(grid, times[inside] - TIGHT)
         for i, row in zip(np.flatnonzero(inside), rows, strict=True):

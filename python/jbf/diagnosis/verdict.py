@@ -24,7 +24,7 @@ from jbf.diagnosis.residual_structure.constancy import disagreement
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.starting_values import scales
-from jbf.models.catalogue import Parameter, find_effect
+from jbf.models.catalogue import Effect, Parameter, find_effect
 from jbf.models.parameter_value import ParameterValue
 
 Names = tuple[str, ...]
@@ -104,14 +104,20 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
 def effects_without_estimate(
     parameters: Mapping[str, ParameterValue], effects: Names, policy: Policy
 ) -> Names:
-    """Find effects whose strength is held fixed, or not significantly different from its null.
+    """Find effects of which no parameter is estimated and significantly different from its null.
 
-    The strengths are the parameters with a null (amplitudes, stiffnesses), not those without
-    (periods, phases). A parameter with an infinite null is compared with zero.
+    One estimated parameter is sufficient: if several have the same effect in these runs, all but
+    one are held fixed. A parameter with an infinite null, or without a null (a time constant), is
+    compared with zero. Of a periodic effect only the amplitude is considered, since the error of a
+    period is small for any amplitude.
     """
 
+    def periodic(effect: Effect) -> bool:
+        """Whether an effect has a phase."""
+        return any(page.period is not None for page in effect.parameters)
+
     def estimated(name: str, page: Parameter) -> bool:
-        """Whether a strength parameter is estimated and significantly different from its null."""
+        """Whether a parameter is estimated and significantly different from its null."""
         value = parameters.get(name)
         if value is None or value.stderr is None:
             return False  # a held parameter has no standard error
@@ -119,8 +125,8 @@ def effects_without_estimate(
         return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
 
     pages = {
-        name: [page for page in find_effect(name).parameters if page.null is not None]
-        for name in effects
+        effect.name: [p for p in effect.parameters if p.null is not None or not periodic(effect)]
+        for effect in map(find_effect, effects)
     }
     return tuple(
         name

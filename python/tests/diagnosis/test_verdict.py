@@ -184,6 +184,7 @@ VALUE = ParameterValue
         ({"coulomb_drag.F_d": VALUE(1.0)}, False),
         # One of several parameters is sufficient.
         ({"cogging.A": VALUE(1.0, 0.1), "cogging.pitch": VALUE(0.1, held=True)}, True),
+        ({"dwell_stiction.a": VALUE(0.1, held=True), "dwell_stiction.s_0": VALUE(3.0, 0.2)}, True),
         # A pitch is not a strength.
         ({"cogging.A": VALUE(1.0, held=True), "cogging.pitch": VALUE(0.1, 0.001)}, False),
         # The null of a stiffness is infinite.

@@ -31,12 +31,11 @@ from jbf.models.delayed_reading import TAU
 from jbf.models.driven import Driven
 
 Array = npt.NDArray[np.float64]
-Clocks = Literal["by run", "shared", "drift", "drift and delay"]
+Clocks = Literal["by run", "drift", "drift and delay"]
 """Clock models of the forces.
 
-"by run": each run has its own delay. "shared": all runs have one delay. "drift": one clock rate,
-with the clock started at each run. "drift and delay": the same clock rate and a delay of the
-instrument.
+"by run": each run has its own delay. "drift": one clock rate, with the clock started at each run.
+"drift and delay": the same clock rate and a delay of the instrument.
 """
 FINE_S = 2.5e-3
 """Largest interval between the times at which the model's force is computed, s.
@@ -142,20 +141,6 @@ def run_delay_step(problem: Problem, solution: Solution) -> DelayStep:
     )
 
 
-def common_delay_step(problem: Problem, solution: Solution) -> tuple[float, float]:
-    """Gauss-Newton step in a time delay of the force that all runs share, and all parameters.
-
-    Returns
-    -------
-    tuple[float, float]
-        Additional delay of the forces, s, and its standard error, s; infinite if the delay is not
-        identifiable.
-    """
-    delay, covariance = _step(problem, solution, range(len(problem.open)), "shared")
-    sd = float(np.sqrt(max(covariance[0, 0], 0.0)))
-    return (float(delay[0]), sd) if sd > 0.0 else (0.0, np.inf)
-
-
 def drift_step(problem: Problem, solution: Solution, with_delay: bool = False) -> DriftStep:
     """Gauss-Newton step in the drift of a clock that starts with each run, and all parameters.
 
@@ -248,7 +233,6 @@ def _rows(
         drift = slope * (p.run.time_s - p.run.time_s[0])
         by_clock = {
             "by run": [slope],
-            "shared": [slope],
             "drift": [drift],
             "drift and delay": [drift, slope],
         }[clocks]

@@ -8,27 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy import optimize
 
-from jbf.estimation.delays import common_delay_step, delay_slope
+from jbf.estimation.delays import delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.motion_error_scale import estimate_motion_errors, penalised_deviance
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
     corrected_delay_s,
-    delayed,
-    moved,
     posteriors,
     rougher,
+    shifted,
     with_corners_of_forces,
     with_posteriors,
 )
-from jbf.estimation.prepared import coasting
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
@@ -43,18 +44,13 @@ It is a numerical tolerance.
 """
 EVALUATIONS = 20
 """Evaluations of each fit. It limits the effort only."""
-RATIOS = 9
-"""Number of ratios of error scale and noise from which a search starts. It bounds a search only."""
-RATIO_STEP = 0.01
-"""Tolerance of the logarithm of the ratio of error scale and noise. It is a numerical tolerance."""
-MOST_SCALE = 3.0
-"""Largest logarithm of the error scale, and minus the smallest. It bounds a search only."""
-MOST_NOISE = 0.5
-"""Logarithm of the largest noise, relative to the residual. It bounds a search only."""
-EXACT_RECORD = 1e-12
-"""Smallest residual relative to the largest force. It is a numerical tolerance."""
-LEAST_NOISE = -7.0
-"""Logarithm of the smallest noise, relative to the residual. It bounds a search only."""
+DELAY_STEP = 0.02
+"""Tolerance of a delay of the force, in sampling intervals. It is a numerical tolerance."""
+DELAY_SPAN = 0.1
+"""Change of a delay for the slope of the squares, in sampling intervals.
+
+It is a numerical resolution.
+"""
 INTENSITY_STEP = 3.0
 """Factor on the noise intensity between two motions whose likelihoods are compared.
 
@@ -79,16 +75,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     errors = [e for p in problem.campaign.prepared if (e := p.motion.errors) is not None]
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
-
-    def iterated(clock_s: float, *, delays: bool = True) -> _ClockFit:
-        """Fit with the force on one clock."""
-        return _iterated(problem, solution, clock_s, delays=delays)
-
     at_once = fits_at_once(problem.campaign, problem.law, problem.effects)
-    ends = list(in_parallel(iterated, clocks, at_once))
-    # Steps in the delay may increase the deviance: fit again without them.
-    late = [c for c, end in zip(clocks, ends, strict=True) if end.delayed]
-    ends += in_parallel(lambda clock_s: iterated(clock_s, delays=False), late, at_once)
+    ends = list(in_parallel(lambda c: _with_likeliest_delay(problem, solution, c), clocks, at_once))
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
     best = _with_corners_of_forces(problem, best)
     motion = best.solution.samples.motion
@@ -100,14 +88,36 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     large = share > settings.conditions.max_motion_share
     if not large and best.solution.rms > settings.noise.max_rms_ratio * plain_fit.rms:
         return plain, plain_fit
-    changes, unclear = [_with_smoothing(best)], settings.motion.max_clock_deviance
-    for other in ends:
-        # The difference between fits of similar likelihood is part of the standard errors.
-        if other is not best and other.deviance - best.deviance < unclear:
-            values = best.problem.encode(best.solution.values)
-            changes.append(best.problem.encode(other.solution.values) - values)
+    # Changes with less smoothing, and between fits of similar likelihood, are systematic errors.
+    others = [with_less_smoothing(best.problem, best.solution)[1]]
+    unclear = settings.motion.max_clock_deviance
+    others += [
+        other.solution
+        for other in ends
+        if other is not best and other.deviance - best.deviance < unclear
+    ]
+    values = best.problem.encode(best.solution.values)
+    changes = [best.problem.encode(other.values) - values for other in others]
     change = np.sqrt(np.sum(np.square(changes), axis=0))
     return best.problem, replace(best.solution, systematic=change)
+
+
+def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+    """Return the problem with a rougher motion, and its solution.
+
+    The noise intensity of the motion's process is multiplied by `roughness_factor`. What depends on
+    it is an error of the smoothing.
+    """
+    factor = problem.campaign.settings.motion.roughness_factor
+    problem = rougher(problem, factor, same_corners=True)
+    near = problem.solution(solution.values, solution.samples, solution.noise)
+    before = solution.samples.motion
+    by_delay = None if before is None else before.by_delay
+    motion = replace(estimate_motion_errors(problem, near), by_delay=by_delay)
+    samples = replace(solution.samples, motion=motion)
+    end = search(problem, samples, solution.values, solution.noise, EVALUATIONS)
+    values = problem.wrapped(end.values)
+    return problem, problem.solution(values, samples, solution.noise, end.converged, end.message)
 
 
 def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
@@ -118,13 +128,13 @@ def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem,
     campaign = problem.campaign
     late_s = corrected_delay_s(campaign)
     if late_s != 0.0:
-        problem = delayed(problem, -late_s)
+        problem = shifted(problem, -late_s)
     motions = [m and m.with_corners_of(None) for m in posteriors(problem)]
     problem = with_posteriors(problem, motions)
     return problem, _near(problem, solution)
 
 
-def _with_corners_of_forces(first: Problem, end: _ClockFit) -> _ClockFit:
+def _with_corners_of_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
     """Locate corners (abrupt changes of speed) of the motion by the forces, and refit.
 
     Parameters
@@ -139,7 +149,7 @@ def _with_corners_of_forces(first: Problem, end: _ClockFit) -> _ClockFit:
     located = with_corners_of_forces(end.problem, end.solution, motion)
     again = with_posteriors(first, posteriors(located))
     near = _near(again, end.solution)
-    return _iterated(again, near, end.clock_s, late_s=end.late_s, delays=end.delayed)
+    return _iterated(again, near, end.late_s, delayed=end.delayed)
 
 
 def _near(problem: Problem, solution: Solution) -> Solution:
@@ -148,8 +158,8 @@ def _near(problem: Problem, solution: Solution) -> Solution:
 
 
 @dataclass(frozen=True, eq=False)
-class _ClockFit:
-    """End of the iteration of a fit with the force on one clock.
+class _DelayedFit:
+    """Fit with a given delay of the force.
 
     Attributes
     ----------
@@ -157,81 +167,160 @@ class _ClockFit:
         The original problem, and the one with the force's delay corrected.
     solution
         The fit.
+    late_s
+        Delay of the force, s.
     delayed
-        Whether a delay of the force was estimated.
-    clock_s, late_s
-        Delay of the clock of the force, and the total delay of the force, s.
+        Whether the delay was estimated.
     """
 
     first: Problem
     problem: Problem
     solution: Solution
-    delayed: bool
-    clock_s: float
     late_s: float
+    delayed: bool
+
+    @cached_property
+    def motion(self) -> ErrorsInMotion:
+        """Errors of the motion with which the solution was fitted, or estimated without them."""
+        motion = self.solution.samples.motion
+        return motion or estimate_motion_errors(self.problem, self.solution)
 
     @cached_property
     def deviance(self) -> float:
         """Minus twice the log likelihood, scaled to the number of samples before the shift."""
-        solution = self.solution
-        samples = self.first.samples_at(solution.values)
-        motion = estimate_motion_errors(self.problem, solution)
-        deviance = motion.whitening(solution.samples.weight).deviance(solution.residuals)
-        counts = [sum(map(np.count_nonzero, s.weight)) for s in (samples, solution.samples)]
-        return deviance * counts[0] / max(counts[1], 1)
+        samples = self.first.samples_at(self.solution.values)
+        counts = [sum(map(np.count_nonzero, s.weight)) for s in (samples, self.solution.samples)]
+        return self.deviance_at(self.solution.samples.weight) * counts[0] / max(counts[1], 1)
+
+    def deviance_at(self, weights: Sequence[Array]) -> float:
+        """Minus twice the log likelihood of the samples with these weights, one array per run."""
+        return self.motion.whitening(weights).deviance(self.solution.residuals)
+
+
+def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) -> _DelayedFit:
+    """Fit with the force on one clock, and with a significant delay common to all runs.
+
+    The force of an abrupt motion is not linear in a delay. The search therefore begins at the
+    likeliest of several delays.
+
+    Parameters
+    ----------
+    clock_s
+        Delay of the clock of the force, s.
+    """
+    on_clock = _iterated(first, solution, clock_s)
+    campaign, settings = first.campaign, first.campaign.settings.motion
+    share = on_clock.motion.mean_share(on_clock.solution.samples.weight)
+    exact = clock_s == 0.0 and share < settings.min_delay_share
+    if exact or TAU in first.names or not campaign.force_has_clock:
+        return on_clock
+    # All delays are compared at the same readings.
+    step_s = min(p.step_s for p in campaign.prepared)
+    most_s = settings.max_delay_samples * step_s
+    prepared = tuple(p.shifted(0.0, 0.0, most_s + step_s) for p in campaign.prepared)
+    samples = Samples.of(prepared, campaign.settings)
+    readings = first.with_campaign(replace(campaign, prepared=prepared, samples=samples))
+    fits = [on_clock]
+    for tried_s in np.arange(-most_s + 0.25 * step_s, most_s, 0.5 * step_s):
+        fits.append(_iterated(readings, fits[-1].solution, float(tried_s), rounds=1))
+    likeliest = min(fits[1:], key=lambda fit: fit.deviance)
+    late_s, sd_s = _self_consistent_delay(likeliest, step_s, most_s)
+    if abs(late_s - clock_s) < settings.min_delay_sigma * sd_s:
+        return on_clock
+    without, delayed = (_iterated(readings, likeliest.solution, s) for s in (clock_s, late_s))
+    used = (fit.solution.samples.weight for fit in (without, delayed))
+    weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
+    if delayed.deviance_at(weights) > without.deviance_at(weights):
+        return on_clock
+    return _iterated(first, delayed.solution, late_s, delayed=True)
+
+
+def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> tuple[float, float]:
+    """Delay at which generalised least squares return this delay, and its standard error, s.
+
+    Generalised least squares have the covariance of a fit with a given delay. The maximum of the
+    likelihood is less accurate: the covariance, and with it the likelihood, jumps where a reading
+    passes a corner of the motion.
+
+    Parameters
+    ----------
+    start
+        Fit with the delay at which the search begins.
+    step_s
+        Sampling interval, s; the delay is at most half of it from that of the start.
+    most_s
+        Largest absolute delay, s.
+    """
+    span_s = DELAY_SPAN * step_s
+
+    @cache
+    def squares(late_s: float) -> tuple[float, float, float]:
+        """Squares relative to the noise for three delays, `span_s` apart."""
+        reference = _iterated(start.first, start.solution, late_s, rounds=1)
+        before, at, after = (_square(reference, late_s + k * span_s) for k in (-1.0, 0.0, 1.0))
+        return before, at, after
+
+    def slope(late_s: float) -> float:
+        """Change of the squares with the delay."""
+        before, _, after = squares(late_s)
+        return after - before
+
+    other_s = start.late_s + (0.5 if slope(start.late_s) < 0.0 else -0.5) * step_s
+    late_s = min(max(other_s, -most_s), most_s)
+    if slope(start.late_s) * slope(late_s) < 0.0:
+        late_s = float(optimize.brentq(slope, start.late_s, late_s, xtol=DELAY_STEP * step_s))
+    before, at, after = squares(late_s)
+    curvature = 0.5 * (before + after) - at
+    return late_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
+
+
+def _square(reference: _DelayedFit, late_s: float) -> float:
+    """Sum of squares of the whitened residuals for a delay of the force, relative to the noise.
+
+    The covariance is that of a fit with another delay, of the same readings. The other parameters
+    are fitted in linear approximation. The sum is scaled to the number of samples of the reference.
+    """
+    near = _near(shifted(reference.first, late_s), reference.solution)
+    used = reference.solution.samples.weight
+    weights = [
+        np.where(counted, weight, 0.0)
+        for counted, weight in zip(near.samples.counted, used, strict=True)
+    ]
+    whitening = reference.motion.whitening(weights)
+    residual, jacobian = whitening.stacked(near.residuals, near.jacobian)
+    square = unexplained_square(jacobian, residual) / reference.motion.noise**2
+    return square * sum(map(np.count_nonzero, used)) / max(len(residual), 1)
 
 
 def _iterated(
     first: Problem,
     solution: Solution,
-    clock_s: float,
+    late_s: float,
     *,
-    late_s: float | None = None,
-    delays: bool = True,
-) -> _ClockFit:
-    """Iterate the fit with a delay `clock_s` of the force.
+    delayed: bool = False,
+    rounds: int = ROUNDS,
+) -> _DelayedFit:
+    """Iterate the fit with a delay `late_s` of the force.
 
     Parameters
     ----------
-    late_s
-        Total delay at which the iteration starts, s; by default that of the clock.
-    delays
-        Whether a significant delay common to all runs is estimated as well.
+    delayed
+        Whether the delay was estimated, and is uncertain.
+    rounds
+        Largest number of iterations.
     """
-    problem, settings = first, first.campaign.settings.motion
-    late_s = clock_s if late_s is None else late_s
-    delays = delays and first.campaign.force_has_clock
-    if late_s != 0.0:
-        problem = delayed(first, late_s)
-        solution = _near(problem, solution)
-    for _ in range(ROUNDS):
+    settings = first.campaign.settings.motion
+    problem = shifted(first, late_s) if late_s != 0.0 else first
+    solution = _near(problem, solution)
+    for _ in range(rounds):
         motion = estimate_motion_errors(problem, solution)
-        share = motion.mean_share(solution.samples.weight)
-        if late_s == 0.0 and share < settings.min_delay_share:
+        if late_s == 0.0 and motion.mean_share(solution.samples.weight) < settings.min_share:
             break
-        step_s = _delay_step_s(first, problem, solution, motion, late_s, clock_s) if delays else 0.0
-        if late_s == step_s == 0.0 and share < settings.min_share:
-            break
-        if step_s != 0.0:
-            late_s += step_s
-            problem = delayed(first, late_s)
-            solution = _near(problem, solution)
-            motion = estimate_motion_errors(problem, solution)
-        before, solution = solution, _fitted(problem, solution, motion, delayed=late_s != clock_s)
+        before, solution = solution, _fitted(problem, solution, motion, delayed=delayed)
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
         if solution.samples.rms(changes) < SETTLED * motion.noise:
             break
-    return _ClockFit(first, problem, solution, late_s != clock_s, clock_s, late_s)
-
-
-def _with_smoothing(end: _ClockFit) -> Array:
-    """Change of each search variable if the motion is smoothed less, shape (k,)."""
-    problem, solution = end.problem, end.solution
-    factor = problem.campaign.settings.motion.roughness_factor
-    other = rougher(problem, factor, same_corners=True)
-    near = other.solution(solution.values, solution.samples, WHITE)
-    near = _fitted(other, near, estimate_motion_errors(other, near), delayed=end.delayed)
-    return problem.encode(near.values) - problem.encode(solution.values)
+    return _DelayedFit(first, problem, solution, late_s, delayed)
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
@@ -252,7 +341,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         near = tried.solution(solution.values, samples, WHITE)
         fitted = _fitted(tried, near, estimate_motion_errors(tried, near))
         errors = estimate_motion_errors(tried, fitted)
-        fitted_deviance = _penalised(tried, errors, fitted.residuals, samples.weight)
+        fitted_deviance = penalised_deviance(tried, errors, fitted.residuals, samples.weight)
         return fitted_deviance, replace(fitted, samples=samples)
 
     first, factor = problem, 1.0
@@ -267,91 +356,6 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         if factor != 1.0:
             break
     return problem, solution
-
-
-def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMotion:
-    """Estimate sensitivities at a solution, the noise, and the scale of the motion's errors.
-
-    Noise and scale maximise the likelihood. The scale corrects the standard errors of the smoother,
-    which are too large if the motion is smoother than the assumed noise process. The logarithm of
-    the scale has a normal prior, so that the scale is 1 if the motion's errors are negligible.
-    """
-    prepared = problem.campaign.prepared
-    predicted = [p.friction - r for p, r in zip(prepared, solution.residuals, strict=True)]
-    sensitivity = [np.zeros((len(f), 3)) for f in predicted]
-    for axis in range(3):
-        changed, steps = zip(*(moved(p, axis) for p in prepared), strict=True)
-        other = problem.chain.predict(solution.values, [p.core for p in changed])
-        for derivatives, before, after, step in zip(
-            sensitivity, predicted, other, steps, strict=True
-        ):
-            derivatives[:, axis] = np.divide(
-                after - before, step, where=step > 0.0, out=derivatives[:, axis]
-            )
-    mass = coasting(problem.campaign.rig)
-    if mass is not None:
-        # The force is derived from the deceleration and contains the errors of the acceleration.
-        for derivatives in sensitivity:
-            derivatives[:, 2] += mass
-    weights = solution.samples.weight
-    errors = tuple(p.motion.errors for p in prepared)
-    motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
-    largest = max(float(np.max(np.abs(f), initial=0.0)) for f in predicted)
-    most = max(solution.samples.rms(solution.residuals), EXACT_RECORD * largest, 1e-150)
-    settings = problem.campaign.settings.motion
-    smallest = settings.min_noise_share * solution.samples.rms(predicted)
-    lowest = float(np.clip(np.log(max(smallest, 1e-150) / most), LEAST_NOISE, 0.0))
-    count = sum(int(np.count_nonzero(w)) for w in weights)
-
-    def at(log_ratio: float, log_noise: float) -> ErrorsInMotion:
-        """Errors of the motion with the logarithms of scale / noise and of noise / RMS."""
-        scale = float(np.exp(log_ratio + log_noise))
-        return replace(motion, noise=most * float(np.exp(log_noise)), scale=scale)
-
-    def profiled(log_ratio: float) -> tuple[float, float]:
-        """Smallest penalised deviance for a logarithm of scale / noise, and that of noise / RMS.
-
-        The filter depends on the ratio only, and the deviance is convex in the logarithm of the
-        noise.
-        """
-        unit = at(log_ratio, 0.0).whitening(weights)
-        squares = unit.deviance(solution.residuals) - unit.log_determinant
-
-        def penalised(log_noise: float) -> float:
-            """Penalised deviance at the logarithm of noise / RMS."""
-            deviance = squares * float(np.exp(-2.0 * log_noise)) + 2.0 * count * log_noise
-            return deviance + unit.log_determinant + _prior(problem, log_ratio + log_noise)
-
-        bounds = max(lowest, -MOST_SCALE - log_ratio), min(MOST_NOISE, MOST_SCALE - log_ratio)
-        found = optimize.minimize_scalar(penalised, bounds=bounds, method="bounded")
-        return float(found.fun), float(found.x)
-
-    # A second minimum exists at low noise, where the motion's errors explain the whole residual.
-    log_ratios = np.linspace(-MOST_SCALE - MOST_NOISE, MOST_SCALE - lowest, RATIOS + 2)
-    least = 1 + int(np.argmin([profiled(log_ratio)[0] for log_ratio in log_ratios[1:-1]]))
-    found = optimize.minimize_scalar(
-        lambda log_ratio: profiled(log_ratio)[0],
-        bounds=(log_ratios[least - 1], log_ratios[least + 1]),
-        method="bounded",
-        options={"xatol": RATIO_STEP},
-    )
-    return at(float(found.x), profiled(float(found.x))[1])
-
-
-def _prior(problem: Problem, log_scale: float) -> float:
-    """Minus twice the log prior density of the logarithm of the scale of the motion's errors."""
-    return (log_scale / problem.campaign.settings.motion.scale_prior) ** 2
-
-
-def _penalised(
-    problem: Problem,
-    motion: ErrorsInMotion,
-    residuals: Sequence[Array],
-    weights: Sequence[Array],
-) -> float:
-    """Minus twice the log likelihood, plus the prior of the scale of the motion's errors."""
-    deviance = motion.whitening(weights).deviance(residuals)
-    return deviance + _prior(problem, float(np.log(motion.scale)))
 
 
 def _fitted(
@@ -372,25 +376,3 @@ def _fitted(
     end = search(problem, samples, values, WHITE, EVALUATIONS)
     values = problem.wrapped(end.values)
     return problem.solution(values, samples, WHITE, end.converged, end.message)
-
-
-def _delay_step_s(
-    first: Problem,
-    problem: Problem,
-    solution: Solution,
-    motion: ErrorsInMotion,
-    late_s: float,
-    clock_s: float,
-) -> float:
-    """Additional delay of the forces, s; zero if it is not significant or implausibly large."""
-    if TAU in problem.names:
-        return 0.0
-    white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
-    step_s, sd_s = common_delay_step(problem, white)
-    settings = problem.campaign.settings.motion
-    if late_s == clock_s and abs(step_s) < settings.min_delay_sigma * sd_s:
-        return 0.0
-    most_s = settings.max_delay_samples * min(p.step_s for p in first.campaign.prepared)
-    if not np.isfinite(sd_s) or abs(late_s + step_s) > most_s:
-        return 0.0
-    return step_s if abs(step_s) > SETTLED * sd_s else 0.0

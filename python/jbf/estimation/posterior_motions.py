@@ -105,7 +105,7 @@ def corrected_delay_s(campaign: Campaign) -> float:
     return sum(f.size for f in _corrected(campaign))
 
 
-def delayed(first: Problem, late_s: float) -> Problem:
+def shifted(first: Problem, late_s: float) -> Problem:
     """Return the problem with the force of each run shifted to earlier times by `late_s`.
 
     The finding states the total delay, including one that has already been corrected.

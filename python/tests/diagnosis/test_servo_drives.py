@@ -44,6 +44,8 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
         pytest.param(4612, {"sensor_offset", "inertia"}, id="hand, stamps at arrival"),
         pytest.param(4816, {"inertia"}, id="point to point, command without noise"),
         pytest.param(4828, {"inertia"}, id="steps, 97 Hz, position alone"),
+        pytest.param(4851, {"inertia"}, id="point to point, force late by 0.71 samples"),
+        pytest.param(4860, {"inertia", "gravity"}, id="exponential starts, smoothing bias"),
     ],
 )
 def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from jbf import Rig, Run, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
-from jbf.estimation.generalised_least_squares import estimate_motion_errors
+from jbf.estimation.motion_error_scale import estimate_motion_errors
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
@@ -63,6 +63,33 @@ def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) 
     assert late[0].run == "seed_21, seed_22"
     for name, true in TRUE.items():
         assert found.parameters[name].value == pytest.approx(true, rel=0.02)
+
+
+def moves_from_rest(late_s: float, step_s: float) -> Run:
+    """Point-to-point moves with abrupt accelerations; the force is a command without noise."""
+    fine = 1e-4 * np.arange(80_000)
+    starts = 0.31 + 0.803 * np.arange(9)
+    velocity = np.zeros(len(fine))
+    for k, start in enumerate(starts):
+        speed = 1.0 + 0.3 * (k % 3)
+        corners = start + np.array([0.0, 0.12, 0.25, 0.37])
+        velocity += np.interp(fine, corners, [0.0, speed, speed, 0.0]) * (-1.0) ** k
+    position = 1e-4 * np.cumsum(velocity)
+    torque = COULOMB * np.sign(velocity) + VISCOUS * velocity
+    torque += INERTIA * np.gradient(velocity, 1e-4)
+    time_s = 0.05 + step_s * np.arange(int(7.9 / step_s))
+    count = 2.0 * np.pi / 20_000.0
+    counted = np.round(np.interp(time_s, fine, position) / count) * count
+    force = np.interp(time_s - late_s, fine, torque)
+    return Run.from_arrays(time_s, None, force, position_m=counted, name="moves")
+
+
+@pytest.mark.parametrize("delay", [-0.6, 0.3, 0.7])
+def test_delay_of_the_force_is_found_from_abrupt_moves(delay: float) -> None:
+    """Unit: samples of 10 ms. Friction is not linear in a delay where a move begins abruptly."""
+    found = fit(Rig(), [moves_from_rest(delay * 0.01, 0.01)], ["inertia"], law="coulomb")
+    late = [finding.size for finding in found.findings if finding.kind == "late_channel"]
+    assert late == [pytest.approx(delay * 0.01, abs=0.001)]
 
 
 def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:

@@ -45,10 +45,11 @@ NUMERICAL = {
         diagnosis.terms.shifts: SETTLED
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
-        estimation.generalised_least_squares: SETTLED EXACT_RECORD RATIO_STEP
+        estimation.generalised_least_squares: SETTLED DELAY_STEP
         estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
+        estimation.motion_error_scale: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS
         estimation.random_effects: ROUNDING
         estimation.search: NEAR SAME ENDED
@@ -85,7 +86,7 @@ NUMERICAL = {
         diagnosis.residual_structure.periodic: MOST_BINS PADDING
         estimation.delays: FINE_S
         estimation.delay_scan: COARSE FINE
-        estimation.generalised_least_squares: INTENSITY_STEP
+        estimation.generalised_least_squares: INTENSITY_STEP DELAY_SPAN
         estimation.posterior_motions: STEP
         estimation.identifiability: SHARES
         estimation.pitches: MOST_BINS PADDING
@@ -97,8 +98,8 @@ NUMERICAL = {
     "range of a search, wider than any plausible result": """
         diagnosis.power.detection_limits: EXPONENTS
         estimation.delay_scan: REACH LEAST_REACH_STEPS
-        estimation.generalised_least_squares: LEAST_NOISE LEAST_INTENSITY MOST_NOISE
-        estimation.generalised_least_squares: MOST_SCALE RATIOS
+        estimation.generalised_least_squares: LEAST_INTENSITY
+        estimation.motion_error_scale: LEAST_NOISE MOST_NOISE MOST_SCALE RATIOS
         estimation.quantisation: MOST_NOISE
         estimation.search: REACH
     """,

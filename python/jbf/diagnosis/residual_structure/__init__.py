@@ -24,6 +24,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.residual_structure.bursts import find_bursts
 from jbf.diagnosis.residual_structure.constancy import find_disagreement, find_stroke_levels
 from jbf.diagnosis.residual_structure.periodic import find_replicates, find_ripples, find_tones
+from jbf.estimation.generalised_least_squares import with_less_smoothing
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
@@ -36,8 +37,19 @@ def find_residual_structure(
 ) -> tuple[Remainder, ...]:
     """Test the residual of a solution for all kinds of structure, and return those found.
 
-    The largest share of the mean square is first.
+    The largest share of the mean square is first. Smoothing biases an estimated motion where the
+    acceleration changes fast. Structure that disappears if the motion is smoothed less is therefore
+    not returned.
     """
+    structure = _structure(problem, solution, policy)
+    if structure and solution.samples.motion is not None:
+        also = {r.axis for r in _structure(*with_less_smoothing(problem, solution), policy)}
+        structure = [r for r in structure if r.axis in also]
+    return tuple(sorted(structure, key=lambda r: -r.share))
+
+
+def _structure(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
+    """Structure of all kinds in the residual of a solution."""
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
     residuals = samples.without_deviations(solution.residuals, solution.noise)
@@ -56,7 +68,7 @@ def find_residual_structure(
     if samples.motion is not None:
         least = policy.least_share(problem.campaign.motion_share)
         structure = [r for r in structure if r.share >= least]
-    return tuple(sorted(structure, key=lambda r: -r.share))
+    return structure
 
 
 def find_patterns(

@@ -9,6 +9,7 @@ from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.comparison.model_comparison import ModelComparison, compare_models
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.posterior_motions import with_delay
 from jbf.models.model import Model, the_model
 from jbf.records.arguments import by_name, list_of_runs
 from jbf.records.run import Run
@@ -79,16 +80,17 @@ def compare(
             problem=f"the models predict friction in {' and '.join(sorted(units))}",
             remedy="compare models of one machine",
         )
-    return compare_models(
-        {name: _compared(compared_model, runs) for name, compared_model in named.items()}
-    )
+    # Readings at the start or the end of a run cannot be compared with all delays.
+    margin_s = max(abs(model.force_delay_s) for model in named.values())
+    return compare_models({name: _compared(each, runs, margin_s) for name, each in named.items()})
 
 
-def _compared(model: Model, runs: Sequence[Run]) -> Comparison:
+def _compared(model: Model, runs: Sequence[Run], margin_s: float = 0.0) -> Comparison:
     """Compare a model with recorded runs that have the columns it requires."""
     for run in runs:
         model.require_columns(run)
-    return compare_prepared(model, Campaign.prepare(model.rig, runs))
+    campaign = Campaign.prepare(model.rig, runs)
+    return compare_prepared(model, with_delay(campaign, model.force_delay_s, margin_s))
 
 
 def _named(models: Sequence[Model]) -> dict[str, Model]:

@@ -21,6 +21,7 @@ from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.noise_floor import noise_floor
+from jbf.estimation.posterior_motions import corrected_delay_s
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.robust_fit import best_weighting
 from jbf.estimation.solution import Solution
@@ -214,6 +215,9 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     }
     if campaign.travel is not None:
         facts["travel"] = campaign.travel
+    late_s = corrected_delay_s(campaign)
+    if late_s != 0.0:
+        facts["force_delay_s"] = late_s
     if "gravity" in problem.effects:
         facts["weight_acts_over"] = weight_acts_over(campaign.prepared[0].run)
     model = Model(

@@ -26,10 +26,10 @@ from jbf.estimation.posterior_motions import (
     rougher,
     shifted,
     with_corners_of_forces,
+    with_delay,
     with_posteriors,
 )
 from jbf.estimation.problem import Problem
-from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
@@ -217,9 +217,7 @@ def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) ->
     # All delays are compared at the same readings.
     step_s = min(p.step_s for p in campaign.prepared)
     most_s = settings.max_delay_samples * step_s
-    prepared = tuple(p.shifted(0.0, 0.0, most_s + step_s) for p in campaign.prepared)
-    samples = Samples.of(prepared, campaign.settings)
-    readings = first.with_campaign(replace(campaign, prepared=prepared, samples=samples))
+    readings = first.with_campaign(with_delay(campaign, 0.0, most_s + step_s))
     fits = [on_clock]
     for tried_s in np.arange(-most_s + 0.25 * step_s, most_s, 0.5 * step_s):
         fits.append(_iterated(readings, fits[-1].solution, float(tried_s), rounds=1))
@@ -237,6 +235,8 @@ def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) ->
 
 def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> tuple[float, float]:
     """Delay at which generalised least squares return this delay, and its standard error, s.
+
+    The standard error is infinite if there is no such delay near the start.
 
     Generalised least squares have the covariance of a fit with a given delay. The maximum of the
     likelihood is less accurate: the covariance, and with it the likelihood, jumps where a reading
@@ -266,9 +266,10 @@ def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> 
         return after - before
 
     other_s = start.late_s + (0.5 if slope(start.late_s) < 0.0 else -0.5) * step_s
-    late_s = min(max(other_s, -most_s), most_s)
-    if slope(start.late_s) * slope(late_s) < 0.0:
-        late_s = float(optimize.brentq(slope, start.late_s, late_s, xtol=DELAY_STEP * step_s))
+    other_s = min(max(other_s, -most_s), most_s)
+    if slope(start.late_s) * slope(other_s) >= 0.0:
+        return start.late_s, np.inf
+    late_s = float(optimize.brentq(slope, start.late_s, other_s, xtol=DELAY_STEP * step_s))
     before, at, after = squares(late_s)
     curvature = 0.5 * (before + after) - at
     return late_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf

@@ -106,25 +106,37 @@ def corrected_delay_s(campaign: Campaign) -> float:
 
 
 def shifted(first: Problem, late_s: float) -> Problem:
-    """Return the problem with the force of each run shifted to earlier times by `late_s`.
+    """Return the problem with the force of each run shifted to earlier times by `late_s`."""
+    return first.with_campaign(with_delay(first.campaign, late_s))
+
+
+def with_delay(before: Campaign, late_s: float, margin_s: float = 0.0) -> Campaign:
+    """Return a campaign with the force of each run shifted to earlier times by `late_s`.
 
     The finding states the total delay, including one that has already been corrected.
+
+    Parameters
+    ----------
+    margin_s
+        Time after the start and before the end of each run in which readings are dropped first. The
+        readings are then the same for all smaller delays.
     """
-    before = first.campaign
-    prepared = tuple(p.shifted(late_s, 0.0) for p in before.prepared)
+    prepared = before.prepared
+    if margin_s > 0.0:
+        prepared = tuple(p.shifted(0.0, 0.0, margin_s) for p in prepared)
+    if late_s != 0.0:
+        prepared = tuple(p.shifted(late_s, 0.0) for p in prepared)
     corrected = _corrected(before)
     total_s = late_s + sum(f.size for f in corrected)
     others = tuple(f for f in before.more_findings if f not in corrected)
     samples = Samples.of(prepared, before.settings)
     campaign = replace(before, prepared=prepared, samples=samples, more_findings=others)
-    if total_s != 0.0:
-        side = "late" if total_s > 0.0 else "early"
-        words = (
-            f"the force is {1e3 * abs(total_s):.2g} ms {side} relative to the motion in all runs"
-        )
-        finding = Finding(LATE, "friction_n", _all_runs(before), total_s, "s", "shifted", words)
-        campaign = campaign.with_findings([finding])
-    return first.with_campaign(campaign)
+    if total_s == 0.0:
+        return campaign
+    side = "late" if total_s > 0.0 else "early"
+    words = f"the force is {1e3 * abs(total_s):.2g} ms {side} relative to the motion in all runs"
+    finding = Finding(LATE, "friction_n", _all_runs(before), total_s, "s", "shifted", words)
+    return campaign.with_findings([finding])
 
 
 def moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:

@@ -160,7 +160,10 @@ class Model(Shown):
         runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
-        motions = [driven_motion(self.rig, run, estimated_motion(self.rig, run)) for run in runs]
+        motions = [
+            driven_motion(self.rig, run, estimated_motion(self.rig, run, self.force_delay_s))
+            for run in runs
+        ]
         core = chain(self.rig, self.law, self.clock, self.effects)
         warn_of_fast_film(core, self.values, motions)
         with core_refusals():
@@ -173,6 +176,14 @@ class Model(Shown):
         """Time delay of the recorded force, s; None without a delay."""
         tau = self.parameters.get(TAU)
         return None if tau is None or tau.value <= 0.0 else tau
+
+    @property
+    def force_delay_s(self) -> float:
+        """Delay of the force relative to the motion in all fitted runs, s; negative if early.
+
+        It belongs to the logger. Predictions of other runs contain it.
+        """
+        return float(self.fit.get("force_delay_s", 0.0))
 
     def predict_late(self, read: Iterable[tuple[Run, Array, EstimatedMotion]]) -> list[Array]:
         """Predict the readings of a force with time delay, N, one array per run.

@@ -1,12 +1,13 @@
 """Fits that account for the errors of the motion and a delay of the force."""
 
 import dataclasses
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf import Rig, Run, fit
+from jbf import Model, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.motion_error_scale import estimate_motion_errors
@@ -90,6 +91,23 @@ def test_delay_of_the_force_is_found_from_abrupt_moves(delay: float) -> None:
     found = fit(Rig(), [moves_from_rest(delay * 0.01, 0.01)], ["inertia"], law="coulomb")
     late = [finding.size for finding in found.findings if finding.kind == "late_channel"]
     assert late == [pytest.approx(delay * 0.01, abs=0.001)]
+
+
+def test_delay_of_the_fitted_runs_belongs_to_the_predictions_of_other_runs(tmp_path: Path) -> None:
+    late_s = 1.2 * STEP_S
+    fitted = fit(Rig(), [drive(seed, late_s) for seed in (21, 22)], ["inertia"], law="coulomb")
+    fitted.model.save(tmp_path / "model.toml")
+    model = Model.load(tmp_path / "model.toml")
+    assert model.force_delay_s == pytest.approx(late_s, abs=0.05 * STEP_S)
+    undelayed = Model(model.rig, model.law, model.effects, model.parameters)
+    other = drive(23, late_s)
+    compared = compare({"with": model, "without": undelayed}, [other])
+    assert [error.name for error in compared.models] == ["with", "without"]
+    assert compare(model, [other]).rms < 0.8 * compare(undelayed, [other]).rms
+    # Predictions of a run have the same delay.
+    assert other.friction is not None
+    errors = [np.std(other.friction - m.predict(other)) for m in (model, undelayed)]
+    assert errors[0] < 0.8 * errors[1]
 
 
 def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:

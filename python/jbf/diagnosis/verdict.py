@@ -108,7 +108,7 @@ def effects_without_estimate(
 
     One estimated parameter is sufficient: if several have the same effect in these runs, all but
     one are held fixed. A parameter with an infinite null, or without a null (a time constant), is
-    compared with zero. Of a periodic effect only the amplitude is considered, since the error of a
+    compared with zero. Only the amplitude of a periodic effect is considered, since the error of a
     period is small for any amplitude.
     """
 

@@ -80,9 +80,21 @@ class ErrorsInMotion:
 
     def mean_share(self, weights: Sequence[Array]) -> float:
         """Mean share of the motion's errors in the variance, over samples with nonzero weight."""
-        ratios = [self.variance_ratio(i)[w > 0.0] for i, w in enumerate(weights)]
-        ratio = np.concatenate(ratios)
+        ratio = self._ratios(weights)
         return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0
+
+    def share_of_mean(self, weights: Sequence[Array]) -> float:
+        """Share of the motion's errors in the mean variance of samples with nonzero weight.
+
+        It is larger than `mean_share` if few samples have large errors.
+        """
+        ratio = self._ratios(weights)
+        mean = float(np.mean(ratio)) if len(ratio) else 0.0
+        return mean / (1.0 + mean)
+
+    def _ratios(self, weights: Sequence[Array]) -> Array:
+        """Variance ratio of each sample with nonzero weight, all runs in one array."""
+        return np.concatenate([self.variance_ratio(i)[w > 0.0] for i, w in enumerate(weights)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -81,7 +81,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     best = _with_corners_of_forces(problem, best)
     motion = best.solution.samples.motion
     if motion is None:
-        return best.problem, best.solution
+        return problem, solution
     # Keep the fit without errors of the motion if that with small ones has a much larger RMS.
     settings = problem.campaign.settings
     share = motion.mean_share(best.solution.samples.weight)
@@ -105,8 +105,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the problem with a rougher motion, and its solution.
 
-    The noise intensity of the motion's process is multiplied by `roughness_factor`. What depends on
-    it is an error of the smoothing.
+    The noise intensity of the motion's process is multiplied by `roughness_factor`. A result that
+    depends on it contains an error of the smoothing.
     """
     factor = problem.campaign.settings.motion.roughness_factor
     problem = rougher(problem, factor, same_corners=True)
@@ -144,7 +144,7 @@ def _with_corners_of_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
     """
     motion = end.solution.samples.motion
     least = first.campaign.settings.motion.min_share
-    if motion is None or motion.mean_share(end.solution.samples.weight) < least:
+    if motion is None or motion.share_of_mean(end.solution.samples.weight) < least:
         return end
     located = with_corners_of_forces(end.problem, end.solution, motion)
     again = with_posteriors(first, posteriors(located))
@@ -210,7 +210,7 @@ def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) ->
     """
     on_clock = _iterated(first, solution, clock_s)
     campaign, settings = first.campaign, first.campaign.settings.motion
-    share = on_clock.motion.mean_share(on_clock.solution.samples.weight)
+    share = on_clock.motion.share_of_mean(on_clock.solution.samples.weight)
     exact = clock_s == 0.0 and share < settings.min_delay_share
     if exact or TAU in first.names or not campaign.force_has_clock:
         return on_clock
@@ -254,16 +254,15 @@ def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> 
     span_s = DELAY_SPAN * step_s
 
     @cache
-    def squares(late_s: float) -> tuple[float, float, float]:
+    def squares(late_s: float) -> Array:
         """Squares relative to the noise for three delays, `span_s` apart."""
         reference = _iterated(start.first, start.solution, late_s, rounds=1)
-        before, at, after = (_square(reference, late_s + k * span_s) for k in (-1.0, 0.0, 1.0))
-        return before, at, after
+        return _squares(reference, late_s + span_s * np.array([-1.0, 0.0, 1.0]))
 
     def slope(late_s: float) -> float:
         """Change of the squares with the delay."""
         before, _, after = squares(late_s)
-        return after - before
+        return float(after - before)
 
     other_s = start.late_s + (0.5 if slope(start.late_s) < 0.0 else -0.5) * step_s
     other_s = min(max(other_s, -most_s), most_s)
@@ -275,22 +274,20 @@ def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> 
     return late_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
 
 
-def _square(reference: _DelayedFit, late_s: float) -> float:
-    """Sum of squares of the whitened residuals for a delay of the force, relative to the noise.
+def _squares(reference: _DelayedFit, delays_s: Array) -> Array:
+    """Sums of squares of the whitened residuals for delays of the force, relative to the noise.
 
-    The covariance is that of a fit with another delay, of the same readings. The other parameters
-    are fitted in linear approximation. The sum is scaled to the number of samples of the reference.
+    The covariance is that of a fit of the same readings with another delay. The other parameters
+    are fitted in linear approximation. The samples are those that all delays use.
     """
-    near = _near(shifted(reference.first, late_s), reference.solution)
-    used = reference.solution.samples.weight
-    weights = [
-        np.where(counted, weight, 0.0)
-        for counted, weight in zip(near.samples.counted, used, strict=True)
-    ]
-    whitening = reference.motion.whitening(weights)
-    residual, jacobian = whitening.stacked(near.residuals, near.jacobian)
-    square = unexplained_square(jacobian, residual) / reference.motion.noise**2
-    return square * sum(map(np.count_nonzero, used)) / max(len(residual), 1)
+    problem, samples, motion = reference.first, reference.solution.samples, reference.motion
+    fits = [_near(shifted(problem, float(late_s)), reference.solution) for late_s in delays_s]
+    used = samples.within(
+        [np.all(c, axis=0) for c in zip(*(f.samples.counted for f in fits), strict=True)]
+    )
+    whitening = motion.whitening([w * c for w, c in zip(used.weight, used.counted, strict=True)])
+    rows = (whitening.stacked(fit.residuals, fit.jacobian) for fit in fits)
+    return np.array([unexplained_square(j, r) for r, j in rows]) / motion.noise**2
 
 
 def _iterated(
@@ -315,7 +312,7 @@ def _iterated(
     solution = _near(problem, solution)
     for _ in range(rounds):
         motion = estimate_motion_errors(problem, solution)
-        if late_s == 0.0 and motion.mean_share(solution.samples.weight) < settings.min_share:
+        if late_s == 0.0 and motion.share_of_mean(solution.samples.weight) < settings.min_share:
             break
         before, solution = solution, _fitted(problem, solution, motion, delayed=delayed)
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
@@ -333,7 +330,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         return problem, solution
     settings = problem.campaign.settings
     motion = estimate_motion_errors(problem, solution)
-    if motion.mean_share(solution.samples.weight) < settings.motion.min_share:
+    if motion.share_of_mean(solution.samples.weight) < settings.motion.min_share:
         return problem, solution
     samples = solution.samples
 

@@ -310,12 +310,12 @@ class MotionSettings:
     )
     min_share: float = documented(
         0.01,
-        "mean share of the motion's errors in the variance below which they are neglected",
+        "share of the motion's errors in the mean variance below which they are neglected",
         "changes standard errors by half a per cent",
     )
     min_delay_share: float = documented(
         1e-3,
-        "mean share below which a delay of the force is not attributed to the clocks",
+        "share of the mean variance below which a delay is not attributed to the clocks",
         "the motion is exact: the model lacks an effect",
     )
     min_noise_share: float = documented(

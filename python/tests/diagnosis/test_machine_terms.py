@@ -105,10 +105,13 @@ def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
     """A joint with Coulomb friction 3 N m, viscous friction 12 N m s/rad, inertia 5.9 kg m^2,
     weight 3.9 N m, offset 0.4 N m and noise 0.2 N m."""
     time = 0.01 * np.arange(2400)
-    angle = size * np.sin(2.0 * np.pi * hertz * time)
-    angle += 0.3 * size * np.sin(2.0 * np.pi * 0.37 * hertz * time + 1.0)
-    speed = np.gradient(angle, time)
-    torque = 3.0 * np.tanh(speed / 0.003) + 12.0 * speed + 5.9 * np.gradient(speed, time)
+    rates = 2.0 * np.pi * hertz * np.array([1.0, 0.37])
+    phases = np.outer(rates, time) + np.array([[0.0], [1.0]])
+    sizes = size * np.array([1.0, 0.3])
+    angle = sizes @ np.sin(phases)
+    speed = (sizes * rates) @ np.cos(phases)
+    acceleration = -(sizes * rates**2) @ np.sin(phases)
+    torque = 3.0 * np.sign(speed) + 12.0 * speed + 5.9 * acceleration
     torque += 3.9 * np.sin(angle) + 0.4 + 0.2 * rng.normal(size=len(time))
     read = angle + 2e-5 * rng.normal(size=len(time))
     made = Run.from_arrays(time, speed, torque, angle_rad=read, name=f"{size}_{hertz}")

@@ -255,6 +255,13 @@ class Motion:
         "a larger share of the variance",
         "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
     )
+    max_pattern_ratio: float = documented(
+        1.5,
+        "ratio of a residual pattern with a motion that is smoothed less, or its reciprocal, above "
+        "which the pattern is an error of the smoothing",
+        "1.0 to 1.2 for friction, at most 0.6 or above 1.7 for smoothing in simulated servo drives "
+        "(seeds 4850 to 4877)",
+    )
     max_effect_share: float = documented(
         0.03,
         "share of the mean square that all other effects must explain where the errors of the "

@@ -18,7 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.comparison.axes import all_axes, force_axis
-from jbf.comparison.patterns import Failure, pattern_along
+from jbf.comparison.bins import Binned
+from jbf.comparison.patterns import STRONG_SHARE, Failure, bin_means, pattern_along
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.residual_structure.bursts import find_bursts
@@ -26,6 +27,7 @@ from jbf.diagnosis.residual_structure.constancy import find_disagreement, find_s
 from jbf.diagnosis.residual_structure.periodic import find_replicates, find_ripples, find_tones
 from jbf.estimation.generalised_least_squares import with_less_smoothing
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
 
@@ -37,19 +39,8 @@ def find_residual_structure(
 ) -> tuple[Remainder, ...]:
     """Test the residual of a solution for all kinds of structure, and return those found.
 
-    The largest share of the mean square is first. Smoothing biases an estimated motion where the
-    acceleration changes fast. Structure that disappears if the motion is smoothed less is therefore
-    not returned.
+    The largest share of the mean square is first.
     """
-    structure = _structure(problem, solution, policy)
-    if structure and solution.samples.motion is not None:
-        also = {r.axis for r in _structure(*with_less_smoothing(problem, solution), policy)}
-        structure = [r for r in structure if r.axis in also]
-    return tuple(sorted(structure, key=lambda r: -r.share))
-
-
-def _structure(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """Structure of all kinds in the residual of a solution."""
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
     residuals = samples.without_deviations(solution.residuals, solution.noise)
@@ -68,7 +59,7 @@ def _structure(problem: Problem, solution: Solution, policy: Policy) -> list[Rem
     if samples.motion is not None:
         least = policy.least_share(problem.campaign.motion_share)
         structure = [r for r in structure if r.share >= least]
-    return structure
+    return tuple(sorted(structure, key=lambda r: -r.share))
 
 
 def find_patterns(
@@ -80,7 +71,9 @@ def find_patterns(
 ) -> list[Failure]:
     """Find axes along which the means of the innovations differ significantly and relevantly.
 
-    Each pattern that is returned contains the means of the residuals (N) along its axis.
+    Each pattern that is returned contains the means of the residuals (N) along its axis. Smoothing
+    biases an estimated motion where the acceleration changes fast: a pattern that changes if the
+    motion is smoothed less is not returned.
     """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
@@ -89,11 +82,45 @@ def find_patterns(
     unit = problem.campaign.rig.quantities.force
     force = force_axis(*_likeliest_forces(problem, solution), unit)
     share, sigma = policy.patterns.min_share, policy.patterns.min_sigma
-    patterns = (
-        pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
-        for axis in (*all_axes(problem.campaign, u_tr), force)
-    )
-    return [pattern for pattern in patterns if pattern is not None]
+    if solution.samples.motion is not None:
+        share = max(share, policy.least_share(problem.campaign.motion_share))
+    found: list[tuple[Binned, Failure]] = []
+    for axis in (*all_axes(problem.campaign, u_tr), force):
+        pattern = pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
+        if pattern is not None:
+            found.append((axis, pattern))
+    if not found or solution.samples.motion is None:
+        return [pattern for _, pattern in found]
+    other = with_less_smoothing(problem, solution)[1]
+    rough = other.samples.without_deviations(other.residuals, other.noise)
+    most = policy.motion.max_pattern_ratio
+    ratios = [
+        _pattern_ratio(axis, solution.samples, innovations, residuals, rough) for axis, _ in found
+    ]
+    return [
+        pattern
+        for (_, pattern), ratio in zip(found, ratios, strict=True)
+        if 1.0 / most < ratio < most
+    ]
+
+
+def _pattern_ratio(
+    axis: Binned,
+    samples: Samples,
+    innovations: Sequence[Array],
+    residuals: Sequence[Array],
+    others: Sequence[Array],
+) -> float:
+    """Ratio of the bin means of other residuals to those of the residuals along an axis.
+
+    It is the mean over the bins, weighted by their sums of squares of the innovations.
+    """
+    means, counts = bin_means(axis, samples, innovations)
+    before, after = (bin_means(axis, samples, r)[0] for r in (residuals, others))
+    weights = np.where(before != 0.0, counts * means**2, 0.0)
+    ratios = np.divide(after, before, out=np.zeros_like(before), where=before != 0.0)
+    strong = weights > STRONG_SHARE * float(np.sum(weights))
+    return float(np.average(ratios[strong], weights=weights[strong])) if np.any(strong) else 0.0
 
 
 def _likeliest_forces(problem: Problem, solution: Solution) -> tuple[list[Array], float]:

@@ -41,9 +41,6 @@ class Confirmation:
     chance
         p-value of the mean improvement of the units: one-sided t-test of the logarithms of the
         ratios of their mean squares; 1 with too few units.
-    whitened
-        Whether the residuals contain errors of the motion. Their RMS may consist of these errors,
-        and only the density is compared.
     """
 
     before_n: float
@@ -53,7 +50,6 @@ class Confirmation:
     halved: Names = ()
     units: int = 0
     chance: float = 1.0
-    whitened: bool = False
 
     @classmethod
     def of(
@@ -103,7 +99,6 @@ class Confirmation:
             halved,
             len(ratios),
             _chance(ratios, settings.min_units),
-            richer.samples.motion is not None,
         )
 
     def units_confirm(self, chance: float) -> bool:
@@ -128,8 +123,6 @@ class Confirmation:
         policy
             Thresholds of the decision.
         """
-        if self.whitened:
-            return held_out_runs_confirm(evidence, self.density, self.density, 0.0, policy)
         share = (self.before_n**2 - self.after_n**2) / max(gained, 1e-300)
         times = self.after_n / max(self.before_n, 1e-300)
         return held_out_runs_confirm(evidence, self.density, share, self.better, policy, times)

@@ -9,7 +9,7 @@ from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.comparison.model_comparison import ModelComparison, compare_models
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.posterior_motions import with_delay
+from jbf.estimation.posterior_motions import corrected_for_delay
 from jbf.models.model import Model, the_model
 from jbf.records.arguments import by_name, list_of_runs
 from jbf.records.run import Run
@@ -80,7 +80,8 @@ def compare(
             problem=f"the models predict friction in {' and '.join(sorted(units))}",
             remedy="compare models of one machine",
         )
-    # Readings at the start or the end of a run cannot be compared with all delays.
+    # Drop readings near both ends that the delay of a model shifts outside the recorded motion, so
+    # that all models are compared at the same samples.
     margin_s = max(abs(model.force_delay_s) for model in named.values())
     return compare_models({name: _compared(each, runs, margin_s) for name, each in named.items()})
 
@@ -90,7 +91,7 @@ def _compared(model: Model, runs: Sequence[Run], margin_s: float = 0.0) -> Compa
     for run in runs:
         model.require_columns(run)
     campaign = Campaign.prepare(model.rig, runs)
-    return compare_prepared(model, with_delay(campaign, model.force_delay_s, margin_s))
+    return compare_prepared(model, corrected_for_delay(campaign, model.force_delay_s, margin_s))
 
 
 def _named(models: Sequence[Model]) -> dict[str, Model]:

@@ -106,13 +106,13 @@ def effects_without_estimate(
 ) -> Names:
     """Find effects of which no parameter is estimated and significantly different from its null.
 
-    One estimated parameter is sufficient: if several have the same effect in these runs, all but
-    one are held fixed. A parameter with an infinite null, or without a null (a time constant), is
-    compared with zero. Only the amplitude of a periodic effect is considered, since the error of a
-    period is small for any amplitude.
+    One such parameter is sufficient, since all but one of several that cannot be distinguished in
+    these runs are held fixed. A parameter with an infinite null, or without a null (a time
+    constant), is compared with zero. Only the amplitude of an effect with a phase is considered,
+    since its period always differs from zero.
     """
 
-    def periodic(effect: Effect) -> bool:
+    def has_phase(effect: Effect) -> bool:
         """Whether an effect has a phase."""
         return any(page.period is not None for page in effect.parameters)
 
@@ -125,7 +125,7 @@ def effects_without_estimate(
         return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
 
     pages = {
-        effect.name: [p for p in effect.parameters if p.null is not None or not periodic(effect)]
+        effect.name: [p for p in effect.parameters if p.null is not None or not has_phase(effect)]
         for effect in map(find_effect, effects)
     }
     return tuple(

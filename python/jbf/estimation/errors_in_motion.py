@@ -83,10 +83,10 @@ class ErrorsInMotion:
         ratio = self._ratios(weights)
         return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0
 
-    def share_of_mean(self, weights: Sequence[Array]) -> float:
+    def variance_share(self, weights: Sequence[Array]) -> float:
         """Share of the motion's errors in the mean variance of samples with nonzero weight.
 
-        It is larger than `mean_share` if few samples have large errors.
+        It is never smaller than `mean_share`, and much larger if few samples have large errors.
         """
         ratio = self._ratios(weights)
         mean = float(np.mean(ratio)) if len(ratio) else 0.0

@@ -1,7 +1,8 @@
 """Generalised least squares that accounts for errors of the estimated motion.
 
-The covariance of the residuals follows from the errors of the motion (`errors_in_motion`). The
-noise, the scale of these errors and a common delay of the force are estimated with the model.
+The covariance of the residuals is derived from the posterior covariance of the motion
+(`errors_in_motion`). The noise, the scale of these errors and a common delay of the force are
+estimated jointly with the model.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
     corrected_delay_s,
+    corrected_for_delay,
     posteriors,
     rougher,
     shifted,
     with_corners_of_forces,
-    with_delay,
     with_posteriors,
 )
 from jbf.estimation.problem import Problem
@@ -47,9 +48,9 @@ EVALUATIONS = 20
 DELAY_STEP = 0.02
 """Tolerance of a delay of the force, in sampling intervals. It is a numerical tolerance."""
 DELAY_SPAN = 0.1
-"""Change of a delay for the slope of the squares, in sampling intervals.
+"""Half-width of the central difference of the sum of squares with respect to the delay.
 
-It is a numerical resolution.
+It is in sampling intervals, and is a numerical resolution.
 """
 INTENSITY_STEP = 3.0
 """Factor on the noise intensity between two motions whose likelihoods are compared.
@@ -105,8 +106,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the problem with a rougher motion, and its solution.
 
-    The noise intensity of the motion's process is multiplied by `roughness_factor`. A result that
-    depends on it contains an error of the smoothing.
+    The intensity of the process noise is multiplied by `roughness_factor`; weights, corners and the
+    projection of a delay are kept. The change of a result measures its smoothing bias.
     """
     factor = problem.campaign.settings.motion.roughness_factor
     problem = rougher(problem, factor, same_corners=True)
@@ -123,7 +124,8 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, 
 def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the problem without corrected delays and without corners located by the forces.
 
-    The errors of the motion of a model with other effects are estimated from it.
+    It is the starting point for the errors of the motion of a model with other effects. Readings
+    that the correction dropped remain dropped.
     """
     campaign = problem.campaign
     late_s = corrected_delay_s(campaign)
@@ -135,7 +137,7 @@ def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem,
 
 
 def _with_corners_of_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
-    """Locate corners (abrupt changes of speed) of the motion by the forces, and refit.
+    """Locate corners (abrupt changes of acceleration) of the motion by the forces, and refit.
 
     Parameters
     ----------
@@ -144,7 +146,7 @@ def _with_corners_of_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
     """
     motion = end.solution.samples.motion
     least = first.campaign.settings.motion.min_share
-    if motion is None or motion.share_of_mean(end.solution.samples.weight) < least:
+    if motion is None or motion.variance_share(end.solution.samples.weight) < least:
         return end
     located = with_corners_of_forces(end.problem, end.solution, motion)
     again = with_posteriors(first, posteriors(located))
@@ -187,7 +189,10 @@ class _DelayedFit:
 
     @cached_property
     def deviance(self) -> float:
-        """Minus twice the log likelihood, scaled to the number of samples before the shift."""
+        """Minus twice the log likelihood, up to a constant, for all samples before the shift.
+
+        A shift drops readings: the deviance per sample is multiplied by the number before it.
+        """
         samples = self.first.samples_at(self.solution.values)
         counts = [sum(map(np.count_nonzero, s.weight)) for s in (samples, self.solution.samples)]
         return self.deviance_at(self.solution.samples.weight) * counts[0] / max(counts[1], 1)
@@ -200,8 +205,9 @@ class _DelayedFit:
 def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) -> _DelayedFit:
     """Fit with the force on one clock, and with a significant delay common to all runs.
 
-    The force of an abrupt motion is not linear in a delay. The search therefore begins at the
-    likeliest of several delays.
+    The force of an abrupt motion is not linear in a delay. The search for a delay therefore begins
+    at the likeliest of several delays, half a sample apart. The delay is used if it is significant,
+    and likelier at the samples of both fits; otherwise the fit on the clock is returned.
 
     Parameters
     ----------
@@ -210,19 +216,19 @@ def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) ->
     """
     on_clock = _iterated(first, solution, clock_s)
     campaign, settings = first.campaign, first.campaign.settings.motion
-    share = on_clock.motion.share_of_mean(on_clock.solution.samples.weight)
+    share = on_clock.motion.variance_share(on_clock.solution.samples.weight)
     exact = clock_s == 0.0 and share < settings.min_delay_share
     if exact or TAU in first.names or not campaign.force_has_clock:
         return on_clock
     # All delays are compared at the same readings.
     step_s = min(p.step_s for p in campaign.prepared)
     most_s = settings.max_delay_samples * step_s
-    readings = first.with_campaign(with_delay(campaign, 0.0, most_s + step_s))
+    readings = first.with_campaign(corrected_for_delay(campaign, 0.0, most_s + step_s))
     fits = [on_clock]
     for tried_s in np.arange(-most_s + 0.25 * step_s, most_s, 0.5 * step_s):
         fits.append(_iterated(readings, fits[-1].solution, float(tried_s), rounds=1))
     likeliest = min(fits[1:], key=lambda fit: fit.deviance)
-    late_s, sd_s = _self_consistent_delay(likeliest, step_s, most_s)
+    late_s, sd_s = _fixed_point_delay(likeliest, step_s, most_s)
     if abs(late_s - clock_s) < settings.min_delay_sigma * sd_s:
         return on_clock
     without, delayed = (_iterated(readings, likeliest.solution, s) for s in (clock_s, late_s))
@@ -233,14 +239,13 @@ def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) ->
     return _iterated(first, delayed.solution, late_s, delayed=True)
 
 
-def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> tuple[float, float]:
-    """Delay at which generalised least squares return this delay, and its standard error, s.
+def _fixed_point_delay(start: _DelayedFit, step_s: float, most_s: float) -> tuple[float, float]:
+    """Solve for the delay that is its own generalised least-squares estimate.
 
-    The standard error is infinite if there is no such delay near the start.
-
-    Generalised least squares have the covariance of a fit with a given delay. The maximum of the
-    likelihood is less accurate: the covariance, and with it the likelihood, jumps where a reading
-    passes a corner of the motion.
+    The estimate has the covariance of a fit with this delay. It is the root of the derivative of
+    the whitened sum of squares at fixed covariance. The maximum of the likelihood is less accurate:
+    the covariance, and with it the likelihood, is discontinuous where a sample crosses a corner of
+    the motion.
 
     Parameters
     ----------
@@ -250,17 +255,23 @@ def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> 
         Sampling interval, s; the delay is at most half of it from that of the start.
     most_s
         Largest absolute delay, s.
+
+    Returns
+    -------
+    tuple[float, float]
+        Delay and its standard error, s. The standard error is infinite if the derivative has no
+        root near the start.
     """
     span_s = DELAY_SPAN * step_s
 
     @cache
     def squares(late_s: float) -> Array:
-        """Squares relative to the noise for three delays, `span_s` apart."""
+        """Sums of squares, relative to the noise variance, for three delays, `span_s` apart."""
         reference = _iterated(start.first, start.solution, late_s, rounds=1)
         return _squares(reference, late_s + span_s * np.array([-1.0, 0.0, 1.0]))
 
     def slope(late_s: float) -> float:
-        """Change of the squares with the delay."""
+        """Central difference of the sum of squares."""
         before, _, after = squares(late_s)
         return float(after - before)
 
@@ -270,15 +281,16 @@ def _self_consistent_delay(start: _DelayedFit, step_s: float, most_s: float) -> 
         return start.late_s, np.inf
     late_s = float(optimize.brentq(slope, start.late_s, other_s, xtol=DELAY_STEP * step_s))
     before, at, after = squares(late_s)
+    # The sum of squares rises by one at one standard error.
     curvature = 0.5 * (before + after) - at
     return late_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
 
 
 def _squares(reference: _DelayedFit, delays_s: Array) -> Array:
-    """Sums of squares of the whitened residuals for delays of the force, relative to the noise.
+    """Whitened sums of squares, divided by the noise variance, for several delays of the force.
 
-    The covariance is that of a fit of the same readings with another delay. The other parameters
-    are fitted in linear approximation. The samples are those that all delays use.
+    Covariance and weights are those of the reference fit. The other parameters are fitted in linear
+    approximation. The samples are those that all delays use.
     """
     problem, samples, motion = reference.first, reference.solution.samples, reference.motion
     fits = [_near(shifted(problem, float(late_s)), reference.solution) for late_s in delays_s]
@@ -312,7 +324,7 @@ def _iterated(
     solution = _near(problem, solution)
     for _ in range(rounds):
         motion = estimate_motion_errors(problem, solution)
-        if late_s == 0.0 and motion.share_of_mean(solution.samples.weight) < settings.min_share:
+        if late_s == 0.0 and motion.variance_share(solution.samples.weight) < settings.min_share:
             break
         before, solution = solution, _fitted(problem, solution, motion, delayed=delayed)
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
@@ -330,7 +342,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         return problem, solution
     settings = problem.campaign.settings
     motion = estimate_motion_errors(problem, solution)
-    if motion.share_of_mean(solution.samples.weight) < settings.motion.min_share:
+    if motion.variance_share(solution.samples.weight) < settings.motion.min_share:
         return problem, solution
     samples = solution.samples
 

@@ -1,4 +1,4 @@
-"""Noise of the force and scale of the errors of the motion, by maximum likelihood."""
+"""Noise of the force, and scale of the errors of the motion, that maximise the likelihood."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 RATIOS = 9
-"""Number of ratios of error scale and noise from which a search starts. It bounds a search only."""
+"""Number of grid points of scale / noise that bracket the minimum. It bounds a search only."""
 RATIO_STEP = 0.01
 """Tolerance of the logarithm of the ratio of error scale and noise. It is a numerical tolerance."""
 MOST_SCALE = 3.0

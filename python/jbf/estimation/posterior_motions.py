@@ -61,7 +61,7 @@ def rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> P
 
 
 def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsInMotion) -> Problem:
-    """Return the problem with corners of the motion (abrupt speed changes) located by the forces.
+    """Return the problem with abrupt changes of the acceleration (corners) located by the forces.
 
     See `Smoothed.with_corners_of`.
     """
@@ -107,19 +107,19 @@ def corrected_delay_s(campaign: Campaign) -> float:
 
 def shifted(first: Problem, late_s: float) -> Problem:
     """Return the problem with the force of each run shifted to earlier times by `late_s`."""
-    return first.with_campaign(with_delay(first.campaign, late_s))
+    return first.with_campaign(corrected_for_delay(first.campaign, late_s))
 
 
-def with_delay(before: Campaign, late_s: float, margin_s: float = 0.0) -> Campaign:
-    """Return a campaign with the force of each run shifted to earlier times by `late_s`.
+def corrected_for_delay(before: Campaign, late_s: float, margin_s: float = 0.0) -> Campaign:
+    """Correct a delay of the force: shift the force of each run to earlier times by `late_s`.
 
     The finding states the total delay, including one that has already been corrected.
 
     Parameters
     ----------
     margin_s
-        Time after the start and before the end of each run in which readings are dropped first. The
-        readings are then the same for all smaller delays.
+        Readings within this time of the start or the end of a motion are dropped before the shift.
+        All delays up to this size then have the same readings.
     """
     prepared = before.prepared
     if margin_s > 0.0:

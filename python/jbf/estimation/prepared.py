@@ -235,7 +235,7 @@ class Prepared:
         drift
             Increase of the delay per second.
         margin_s
-            Time from the start and the end of the motion in which readings are dropped, s.
+            Readings closer than this to the start or the end of the motion are dropped, s.
         """
         instants, motion = self.motion_as_read
         time = self.run.time_s

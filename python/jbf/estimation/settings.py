@@ -118,7 +118,7 @@ class ConditionSettings:
     max_motion_share: float = documented(
         0.1,
         "mean share of the motion's errors in the variance above which no effect that filters a "
-        "force or a motion is a candidate, and the smoothness of the motion is estimated",
+        "force or a motion is a candidate",
         "such an effect would smooth these errors",
     )
     min_pitch_periods: float = documented(

@@ -179,9 +179,11 @@ class Model(Shown):
 
     @property
     def force_delay_s(self) -> float:
-        """Delay of the force relative to the motion in all fitted runs, s; negative if early.
+        """Common delay of the recorded force that the fit corrected, s; zero if none.
 
-        It belongs to the logger. Predictions of other runs contain it.
+        It is negative for an early force. It is a property of the logger: `predict` and
+        :func:`jbf.compare` apply it to every run, exports do not. See `delay` for the effect
+        `time_delay`.
         """
         return float(self.fit.get("force_delay_s", 0.0))
 

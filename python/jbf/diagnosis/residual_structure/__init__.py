@@ -72,8 +72,9 @@ def find_patterns(
     """Find axes along which the means of the innovations differ significantly and relevantly.
 
     Each pattern that is returned contains the means of the residuals (N) along its axis. Smoothing
-    biases an estimated motion where the acceleration changes fast: a pattern that changes if the
-    motion is smoothed less is not returned.
+    biases an estimated motion where the acceleration changes fast. The model is therefore refitted
+    with a motion that is smoothed less, and a pattern that changes by more than
+    `policy.motion.max_pattern_ratio` is not returned.
     """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
@@ -109,14 +110,15 @@ def _pattern_ratio(
     samples: Samples,
     innovations: Sequence[Array],
     residuals: Sequence[Array],
-    others: Sequence[Array],
+    less_smoothed: Sequence[Array],
 ) -> float:
-    """Ratio of the bin means of other residuals to those of the residuals along an axis.
+    """Mean ratio of the bin means with less smoothing to those of the residuals along an axis.
 
-    It is the mean over the bins, weighted by their sums of squares of the innovations.
+    The weight of a bin is the sum of squares of the innovations that its mean explains; weak bins
+    are ignored. The ratio is zero if no bin remains.
     """
     means, counts = bin_means(axis, samples, innovations)
-    before, after = (bin_means(axis, samples, r)[0] for r in (residuals, others))
+    before, after = (bin_means(axis, samples, r)[0] for r in (residuals, less_smoothed))
     weights = np.where(before != 0.0, counts * means**2, 0.0)
     ratios = np.divide(after, before, out=np.zeros_like(before), where=before != 0.0)
     strong = weights > STRONG_SHARE * float(np.sum(weights))

@@ -149,6 +149,8 @@ def independent_share(
     middle = sum(float(np.sum(e)) for e in innovations) / count
     for e in innovations:
         n = len(e)
+        if n == 0:
+            continue  # a run of which no sample is included
         power = np.fft.irfft(np.abs(np.fft.rfft(e - middle, 2 * n)) ** 2)[: min(n, len(total))]
         total[: len(power)] += power
     if total[0] <= 0.0:

@@ -353,3 +353,11 @@ def test_candidate_with_fewer_samples_keeps_its_share_of_the_significance_level(
     level = Level(false_alarm_rate=0.01, candidates=3, chance=1.0)
     expected = calibrated(level, [one, one])
     assert calibrated(level, [one, fewer, one]).chance == pytest.approx(expected.chance)
+
+
+def test_share_of_independent_samples_ignores_runs_without_included_samples() -> None:
+    noise = np.random.default_rng(8).normal(size=400)
+    parts = [noise[:250], noise[250:]]
+    assert independent_share([parts[0], noise[:0], parts[1]], [0.01] * 3) == independent_share(
+        parts, [0.01] * 2
+    )

@@ -185,7 +185,7 @@ VALUE = ParameterValue
         # One of several parameters is sufficient.
         ({"cogging.A": VALUE(1.0, 0.1), "cogging.pitch": VALUE(0.1, held=True)}, True),
         ({"dwell_stiction.a": VALUE(0.1, held=True), "dwell_stiction.s_0": VALUE(3.0, 0.2)}, True),
-        # A pitch is not a strength.
+        # A pitch differs from zero for any amplitude.
         ({"cogging.A": VALUE(1.0, held=True), "cogging.pitch": VALUE(0.1, 0.001)}, False),
         # The null of a stiffness is infinite.
         ({"presliding.sigma": VALUE(2e5, 1e4)}, True),

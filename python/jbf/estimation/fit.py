@@ -215,9 +215,9 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     }
     if campaign.travel is not None:
         facts["travel"] = campaign.travel
-    late_s = corrected_delay_s(campaign)
-    if late_s != 0.0:
-        facts["force_delay_s"] = late_s
+    delay_s = corrected_delay_s(campaign)
+    if delay_s != 0.0:
+        facts["force_delay_s"] = delay_s
     if "gravity" in problem.effects:
         facts["weight_acts_over"] = weight_acts_over(campaign.prepared[0].run)
     model = Model(

@@ -25,10 +25,10 @@ from jbf.estimation.posterior_motions import (
     corrected_delay_s,
     corrected_for_delay,
     posteriors,
-    rougher,
     shifted,
-    with_corners_of_forces,
+    with_corners_located_by_forces,
     with_posteriors,
+    with_scaled_intensity,
 )
 from jbf.estimation.problem import Problem
 from jbf.estimation.search import search
@@ -79,7 +79,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     at_once = fits_at_once(problem.campaign, problem.law, problem.effects)
     ends = list(in_parallel(lambda c: _with_likeliest_delay(problem, solution, c), clocks, at_once))
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
-    best = _with_corners_of_forces(problem, best)
+    best = _with_corners_located_by_forces(problem, best)
     motion = best.solution.samples.motion
     if motion is None:
         return problem, solution
@@ -89,7 +89,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     large = share > settings.conditions.max_motion_share
     if not large and best.solution.rms > settings.noise.max_rms_ratio * plain_fit.rms:
         return plain, plain_fit
-    # Changes with less smoothing, and between fits of similar likelihood, are systematic errors.
+    # Changes with less smoothing, with the other clock and without the corners located by forces
+    # are systematic errors, the latter two if the likelihood is similar.
     others = [with_less_smoothing(best.problem, best.solution)[1]]
     unclear = settings.motion.max_clock_deviance
     others += [
@@ -104,13 +105,13 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Return the problem with a rougher motion, and its solution.
+    """Return the problem with a with_scaled_intensity motion, and its solution.
 
     The intensity of the process noise is multiplied by `roughness_factor`; weights, corners and the
     projection of a delay are kept. The change of a result measures its smoothing bias.
     """
     factor = problem.campaign.settings.motion.roughness_factor
-    problem = rougher(problem, factor, same_corners=True)
+    problem = with_scaled_intensity(problem, factor, same_corners=True)
     near = problem.solution(solution.values, solution.samples, solution.noise)
     before = solution.samples.motion
     by_delay = None if before is None else before.by_delay
@@ -121,22 +122,22 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, 
     return problem, problem.solution(values, samples, solution.noise, end.converged, end.message)
 
 
-def with_recorded_motion(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the problem without corrected delays and without corners located by the forces.
 
     It is the starting point for the errors of the motion of a model with other effects. Readings
     that the correction dropped remain dropped.
     """
     campaign = problem.campaign
-    late_s = corrected_delay_s(campaign)
-    if late_s != 0.0:
-        problem = shifted(problem, -late_s)
-    motions = [m and m.with_corners_of(None) for m in posteriors(problem)]
+    delay_s = corrected_delay_s(campaign)
+    if delay_s != 0.0:
+        problem = shifted(problem, -delay_s)
+    motions = [m and m.with_corners_located_by(None) for m in posteriors(problem)]
     problem = with_posteriors(problem, motions)
     return problem, _near(problem, solution)
 
 
-def _with_corners_of_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
+def _with_corners_located_by_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
     """Locate corners (abrupt changes of acceleration) of the motion by the forces, and refit.
 
     Parameters
@@ -148,10 +149,10 @@ def _with_corners_of_forces(first: Problem, end: _DelayedFit) -> _DelayedFit:
     least = first.campaign.settings.motion.min_share
     if motion is None or motion.variance_share(end.solution.samples.weight) < least:
         return end
-    located = with_corners_of_forces(end.problem, end.solution, motion)
+    located = with_corners_located_by_forces(end.problem, end.solution, motion)
     again = with_posteriors(first, posteriors(located))
     near = _near(again, end.solution)
-    return _iterated(again, near, end.late_s, delayed=end.delayed)
+    return _iterated(again, near, end.delay_s, delayed=end.delayed)
 
 
 def _near(problem: Problem, solution: Solution) -> Solution:
@@ -169,7 +170,7 @@ class _DelayedFit:
         The original problem, and the one with the force's delay corrected.
     solution
         The fit.
-    late_s
+    delay_s
         Delay of the force, s.
     delayed
         Whether the delay was estimated.
@@ -178,7 +179,7 @@ class _DelayedFit:
     first: Problem
     problem: Problem
     solution: Solution
-    late_s: float
+    delay_s: float
     delayed: bool
 
     @cached_property
@@ -222,24 +223,26 @@ def _with_likeliest_delay(first: Problem, solution: Solution, clock_s: float) ->
         return on_clock
     # All delays are compared at the same readings.
     step_s = min(p.step_s for p in campaign.prepared)
-    most_s = settings.max_delay_samples * step_s
-    readings = first.with_campaign(corrected_for_delay(campaign, 0.0, most_s + step_s))
+    max_delay_s = settings.max_delay_samples * step_s
+    readings = first.with_campaign(corrected_for_delay(campaign, 0.0, max_delay_s + step_s))
     fits = [on_clock]
-    for tried_s in np.arange(-most_s + 0.25 * step_s, most_s, 0.5 * step_s):
+    for tried_s in np.arange(-max_delay_s + 0.25 * step_s, max_delay_s, 0.5 * step_s):
         fits.append(_iterated(readings, fits[-1].solution, float(tried_s), rounds=1))
     likeliest = min(fits[1:], key=lambda fit: fit.deviance)
-    late_s, sd_s = _fixed_point_delay(likeliest, step_s, most_s)
-    if abs(late_s - clock_s) < settings.min_delay_sigma * sd_s:
+    delay_s, sd_s = _fixed_point_delay(likeliest, step_s, max_delay_s)
+    if abs(delay_s - clock_s) < settings.min_delay_sigma * sd_s:
         return on_clock
-    without, delayed = (_iterated(readings, likeliest.solution, s) for s in (clock_s, late_s))
+    without, delayed = (_iterated(readings, likeliest.solution, s) for s in (clock_s, delay_s))
     used = (fit.solution.samples.weight for fit in (without, delayed))
     weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
     if delayed.deviance_at(weights) > without.deviance_at(weights):
         return on_clock
-    return _iterated(first, delayed.solution, late_s, delayed=True)
+    return _iterated(first, delayed.solution, delay_s, delayed=True)
 
 
-def _fixed_point_delay(start: _DelayedFit, step_s: float, most_s: float) -> tuple[float, float]:
+def _fixed_point_delay(
+    start: _DelayedFit, step_s: float, max_delay_s: float
+) -> tuple[float, float]:
     """Solve for the delay that is its own generalised least-squares estimate.
 
     The estimate has the covariance of a fit with this delay. It is the root of the derivative of
@@ -253,7 +256,7 @@ def _fixed_point_delay(start: _DelayedFit, step_s: float, most_s: float) -> tupl
         Fit with the delay at which the search begins.
     step_s
         Sampling interval, s; the delay is at most half of it from that of the start.
-    most_s
+    max_delay_s
         Largest absolute delay, s.
 
     Returns
@@ -265,25 +268,25 @@ def _fixed_point_delay(start: _DelayedFit, step_s: float, most_s: float) -> tupl
     span_s = DELAY_SPAN * step_s
 
     @cache
-    def squares(late_s: float) -> Array:
+    def squares(delay_s: float) -> Array:
         """Sums of squares, relative to the noise variance, for three delays, `span_s` apart."""
-        reference = _iterated(start.first, start.solution, late_s, rounds=1)
-        return _squares(reference, late_s + span_s * np.array([-1.0, 0.0, 1.0]))
+        reference = _iterated(start.first, start.solution, delay_s, rounds=1)
+        return _squares(reference, delay_s + span_s * np.array([-1.0, 0.0, 1.0]))
 
-    def slope(late_s: float) -> float:
+    def slope(delay_s: float) -> float:
         """Central difference of the sum of squares."""
-        before, _, after = squares(late_s)
+        before, _, after = squares(delay_s)
         return float(after - before)
 
-    other_s = start.late_s + (0.5 if slope(start.late_s) < 0.0 else -0.5) * step_s
-    other_s = min(max(other_s, -most_s), most_s)
-    if slope(start.late_s) * slope(other_s) >= 0.0:
-        return start.late_s, np.inf
-    late_s = float(optimize.brentq(slope, start.late_s, other_s, xtol=DELAY_STEP * step_s))
-    before, at, after = squares(late_s)
+    other_s = start.delay_s + (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
+    other_s = min(max(other_s, -max_delay_s), max_delay_s)
+    if slope(start.delay_s) * slope(other_s) >= 0.0:
+        return start.delay_s, np.inf
+    delay_s = float(optimize.brentq(slope, start.delay_s, other_s, xtol=DELAY_STEP * step_s))
+    before, at, after = squares(delay_s)
     # The sum of squares rises by one at one standard error.
     curvature = 0.5 * (before + after) - at
-    return late_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
+    return delay_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
 
 
 def _squares(reference: _DelayedFit, delays_s: Array) -> Array:
@@ -293,7 +296,7 @@ def _squares(reference: _DelayedFit, delays_s: Array) -> Array:
     approximation. The samples are those that all delays use.
     """
     problem, samples, motion = reference.first, reference.solution.samples, reference.motion
-    fits = [_near(shifted(problem, float(late_s)), reference.solution) for late_s in delays_s]
+    fits = [_near(shifted(problem, float(delay_s)), reference.solution) for delay_s in delays_s]
     used = samples.within(
         [np.all(c, axis=0) for c in zip(*(f.samples.counted for f in fits), strict=True)]
     )
@@ -305,12 +308,12 @@ def _squares(reference: _DelayedFit, delays_s: Array) -> Array:
 def _iterated(
     first: Problem,
     solution: Solution,
-    late_s: float,
+    delay_s: float,
     *,
     delayed: bool = False,
     rounds: int = ROUNDS,
 ) -> _DelayedFit:
-    """Iterate the fit with a delay `late_s` of the force.
+    """Iterate the fit with a delay `delay_s` of the force.
 
     Parameters
     ----------
@@ -320,17 +323,17 @@ def _iterated(
         Largest number of iterations.
     """
     settings = first.campaign.settings.motion
-    problem = shifted(first, late_s) if late_s != 0.0 else first
+    problem = shifted(first, delay_s) if delay_s != 0.0 else first
     solution = _near(problem, solution)
     for _ in range(rounds):
         motion = estimate_motion_errors(problem, solution)
-        if late_s == 0.0 and motion.variance_share(solution.samples.weight) < settings.min_share:
+        if delay_s == 0.0 and motion.variance_share(solution.samples.weight) < settings.min_share:
             break
         before, solution = solution, _fitted(problem, solution, motion, delayed=delayed)
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
         if solution.samples.rms(changes) < SETTLED * motion.noise:
             break
-    return _DelayedFit(first, problem, solution, late_s, delayed)
+    return _DelayedFit(first, problem, solution, delay_s, delayed)
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
@@ -358,7 +361,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
     least, _ = fitted_with(problem)
     for change in (1.0 / INTENSITY_STEP, INTENSITY_STEP):
         while LEAST_INTENSITY < factor * change < 1.0 / LEAST_INTENSITY:
-            tried = rougher(first, factor * change)
+            tried = with_scaled_intensity(first, factor * change)
             deviance, refitted = fitted_with(tried)
             if deviance >= least - settings.motion.min_smoothness_gain:
                 break

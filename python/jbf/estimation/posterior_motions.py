@@ -51,19 +51,26 @@ def with_posteriors(problem: Problem, motions: Sequence[Smoothed | None]) -> Pro
     return problem.with_campaign(replace(problem.campaign, prepared=tuple(prepared)))
 
 
-def rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> Problem:
+def with_scaled_intensity(
+    problem: Problem, factor: float, *, same_corners: bool = False
+) -> Problem:
     """Return the problem with the noise intensity of the motion's process times a factor.
 
-    See `Smoothed.rougher`.
+    See `Smoothed.with_scaled_intensity`.
     """
-    motions = [m and m.rougher(factor, same_corners=same_corners) for m in posteriors(problem)]
+    motions = [
+        m and m.with_scaled_intensity(factor, same_corners=same_corners)
+        for m in posteriors(problem)
+    ]
     return with_posteriors(problem, motions)
 
 
-def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsInMotion) -> Problem:
+def with_corners_located_by_forces(
+    problem: Problem, solution: Solution, errors: ErrorsInMotion
+) -> Problem:
     """Return the problem with abrupt changes of the acceleration (corners) located by the forces.
 
-    See `Smoothed.with_corners_of`.
+    See `Smoothed.with_corners_located_by`.
     """
     if not problem.campaign.force_has_clock:
         return problem
@@ -85,7 +92,7 @@ def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsI
             variances = np.where(weight > 0.0, (errors.noise / weight) ** 2, np.inf)
         values = np.einsum("ni,ni->n", rows, mean[:, :3]) + residual
         forces = ForceReadings(p.run.time_s, rows, values, variances)
-        motions.append(smoothed.with_corners_of(forces))
+        motions.append(smoothed.with_corners_located_by(forces))
     return with_posteriors(problem, motions)
 
 
@@ -105,13 +112,13 @@ def corrected_delay_s(campaign: Campaign) -> float:
     return sum(f.size for f in _corrected(campaign))
 
 
-def shifted(first: Problem, late_s: float) -> Problem:
-    """Return the problem with the force of each run shifted to earlier times by `late_s`."""
-    return first.with_campaign(corrected_for_delay(first.campaign, late_s))
+def shifted(first: Problem, delay_s: float) -> Problem:
+    """Return the problem with the force of each run shifted to earlier times by `delay_s`."""
+    return first.with_campaign(corrected_for_delay(first.campaign, delay_s))
 
 
-def corrected_for_delay(before: Campaign, late_s: float, margin_s: float = 0.0) -> Campaign:
-    """Correct a delay of the force: shift the force of each run to earlier times by `late_s`.
+def corrected_for_delay(before: Campaign, delay_s: float, margin_s: float = 0.0) -> Campaign:
+    """Correct a delay of the force: shift the force of each run to earlier times by `delay_s`.
 
     The finding states the total delay, including one that has already been corrected.
 
@@ -124,10 +131,10 @@ def corrected_for_delay(before: Campaign, late_s: float, margin_s: float = 0.0) 
     prepared = before.prepared
     if margin_s > 0.0:
         prepared = tuple(p.shifted(0.0, 0.0, margin_s) for p in prepared)
-    if late_s != 0.0:
-        prepared = tuple(p.shifted(late_s, 0.0) for p in prepared)
+    if delay_s != 0.0:
+        prepared = tuple(p.shifted(delay_s, 0.0) for p in prepared)
     corrected = _corrected(before)
-    total_s = late_s + sum(f.size for f in corrected)
+    total_s = delay_s + sum(f.size for f in corrected)
     others = tuple(f for f in before.more_findings if f not in corrected)
     samples = Samples.of(prepared, before.settings)
     campaign = replace(before, prepared=prepared, samples=samples, more_findings=others)

@@ -225,12 +225,12 @@ class Prepared:
         findings = (*self.examined.findings, *more)
         return replace(self, examined=replace(self.examined, findings=findings))
 
-    def shifted(self, late_s: float, drift: float, margin_s: float = 0.0) -> Prepared:
+    def shifted(self, delay_s: float, drift: float, margin_s: float = 0.0) -> Prepared:
         """Return the run with its force shifted to earlier times.
 
         Parameters
         ----------
-        late_s
+        delay_s
             Delay of the force in the middle of the run, s.
         drift
             Increase of the delay per second.
@@ -240,7 +240,7 @@ class Prepared:
         instants, motion = self.motion_as_read
         time = self.run.time_s
         middle = 0.5 * (time[0] + time[-1])
-        read = time - late_s - drift * (time - middle)
+        read = time - delay_s - drift * (time - middle)
         # Readings from before the start or after the end of the motion cannot be compared.
         kept = (read >= instants[0] + margin_s) & (read <= instants[-1] - margin_s)
         run = self.run.select(kept).at(read[kept], self.readings_n[kept])

@@ -162,15 +162,15 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
     )
 
 
-def estimated_motion(rig: Rig, run: Run, late_s: float = 0.0) -> EstimatedMotion:
+def estimated_motion(rig: Rig, run: Run, delay_s: float = 0.0) -> EstimatedMotion:
     """Estimate the motion of a run with the journal radius of its rig.
 
-    The motion is that of the times of the run minus `late_s`, within the recorded times.
+    The motion is that of the times of the run minus `delay_s`, within the recorded times.
     """
     instants, motion = sampled_motion(rig, run)
-    if late_s == 0.0 and len(instants) == len(run):
+    if delay_s == 0.0 and len(instants) == len(run):
         return motion
-    return motion.at(instants, np.clip(run.time_s - late_s, instants[0], instants[-1]))
+    return motion.at(instants, np.clip(run.time_s - delay_s, instants[0], instants[-1]))
 
 
 def sampled_motion(

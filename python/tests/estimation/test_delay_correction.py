@@ -82,7 +82,7 @@ def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
 
 
 @pytest.mark.parametrize(
-    ("late_s", "drift", "possible"),
+    ("delays_s", "drift", "possible"),
     [
         ((1.0, 2.0), 0.0, True),
         ((0.0, -2.1), 0.0, False),
@@ -92,11 +92,11 @@ def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
     ],
 )
 def test_delay_above_a_tenth_of_a_run_or_drift_above_0_2_percent_is_impossible(
-    late_s: tuple[float, float], drift: float, possible: bool
+    delays_s: tuple[float, float], drift: float, possible: bool
 ) -> None:
     """Runs of 10 s and 20 s; at the ends of a run a drift adds half of duration times drift."""
     problem = fitted(one_way_campaign((0.0, 0.0), durations_s=(10.0, 20.0)))[0]
-    assert shifts.possible_clocks(problem, np.array(late_s), drift) == possible
+    assert shifts.possible_clocks(problem, np.array(delays_s), drift) == possible
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
         problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
     )
     assert max(LARGE_DELAYS_S) > 3.0 * SETTINGS.delays.linear_s
-    np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
+    np.testing.assert_allclose(found.delays_s, LARGE_DELAYS_S, atol=4e-4)
     assert found.solution.rms == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 
 
@@ -118,7 +118,7 @@ def test_delay_effect_is_replaced_by_run_delays_if_the_runs_differ_in_delay() ->
     fit = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
     found = shifts.fit_delays_by_run(fit[0], unshifted(*fit))
     assert found.problem.effects == ()
-    np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
+    np.testing.assert_allclose(found.delays_s, LARGE_DELAYS_S, atol=4e-4)
 
 
 def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
@@ -144,7 +144,7 @@ def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
     found = shifts.fit_clock_drift(problem, unshifted(problem, solution))
     step = drift_step(found.problem, found.solution)
     assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
-    np.testing.assert_allclose(found.late_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)
+    np.testing.assert_allclose(found.delays_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)
     assert step.square <= shifts.SETTLED**2
     assert found.solution.rms == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 

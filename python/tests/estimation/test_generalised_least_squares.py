@@ -21,7 +21,7 @@ INERTIA, COULOMB, VISCOUS = 0.05, 0.4, 0.1
 NOISE = 0.02
 
 
-def drive(seed: int, late_s: float = 0.0, count: float = 2.0 * np.pi / 4096.0) -> Run:
+def drive(seed: int, delay_s: float = 0.0, count: float = 2.0 * np.pi / 4096.0) -> Run:
     """A drive that follows trapezoids of random heights, recorded by an encoder only."""
     random = np.random.default_rng(seed)
     fine = 1e-4 * np.arange(120_000)
@@ -33,7 +33,7 @@ def drive(seed: int, late_s: float = 0.0, count: float = 2.0 * np.pi / 4096.0) -
     acceleration = np.gradient(velocity, 1e-4)
     torque = COULOMB * np.sign(velocity) + VISCOUS * velocity + INERTIA * acceleration
     time_s = 0.01 + STEP_S * np.arange(2900)
-    force = np.interp(time_s - late_s, fine, torque) + random.normal(0.0, NOISE, len(time_s))
+    force = np.interp(time_s - delay_s, fine, torque) + random.normal(0.0, NOISE, len(time_s))
     counted = np.round(np.interp(time_s, fine, position) / count) * count
     return Run.from_arrays(time_s, None, force, position_m=counted, name=f"seed_{seed}")
 
@@ -66,7 +66,7 @@ def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) 
         assert found.parameters[name].value == pytest.approx(true, rel=0.02)
 
 
-def moves_from_rest(late_s: float, step_s: float) -> Run:
+def moves_from_rest(delay_s: float, step_s: float) -> Run:
     """Point-to-point moves with abrupt accelerations; the force is a command without noise."""
     fine = 1e-4 * np.arange(80_000)
     starts = 0.31 + 0.803 * np.arange(9)
@@ -81,7 +81,7 @@ def moves_from_rest(late_s: float, step_s: float) -> Run:
     time_s = 0.05 + step_s * np.arange(int(7.9 / step_s))
     count = 2.0 * np.pi / 20_000.0
     counted = np.round(np.interp(time_s, fine, position) / count) * count
-    force = np.interp(time_s - late_s, fine, torque)
+    force = np.interp(time_s - delay_s, fine, torque)
     return Run.from_arrays(time_s, None, force, position_m=counted, name="moves")
 
 
@@ -94,13 +94,13 @@ def test_delay_of_the_force_is_found_from_abrupt_moves(delay: float) -> None:
 
 
 def test_delay_of_the_fitted_runs_belongs_to_the_predictions_of_other_runs(tmp_path: Path) -> None:
-    late_s = 1.2 * STEP_S
-    fitted = fit(Rig(), [drive(seed, late_s) for seed in (21, 22)], ["inertia"], law="coulomb")
+    delay_s = 1.2 * STEP_S
+    fitted = fit(Rig(), [drive(seed, delay_s) for seed in (21, 22)], ["inertia"], law="coulomb")
     fitted.model.save(tmp_path / "model.toml")
     model = Model.load(tmp_path / "model.toml")
-    assert model.force_delay_s == pytest.approx(late_s, abs=0.05 * STEP_S)
+    assert model.force_delay_s == pytest.approx(delay_s, abs=0.05 * STEP_S)
     undelayed = Model(model.rig, model.law, model.effects, model.parameters)
-    other = drive(23, late_s)
+    other = drive(23, delay_s)
     compared = compare({"with": model, "without": undelayed}, [other])
     assert [error.name for error in compared.models] == ["with", "without"]
     assert compare(model, [other]).rms < 0.8 * compare(undelayed, [other]).rms

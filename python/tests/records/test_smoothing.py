@@ -218,7 +218,7 @@ def test_forces_place_a_corner_in_the_step_in_which_the_acceleration_jumps() -> 
     noisy = true + np.random.default_rng(3).normal(0.0, 0.05, len(true))
     variances = np.full(len(true), 0.05**2)
     variances[100] = np.inf
-    located = smoothed.with_corners_of(ForceReadings(instants, rows, noisy, variances))
+    located = smoothed.with_corners_located_by(ForceReadings(instants, rows, noisy, variances))
     step = int(corner_s / STEP_S)
     assert abs(int(np.argmax(located.corners)) - step) <= 1
     acceleration = np.where(time > corner_s, -6.0, 0.0)

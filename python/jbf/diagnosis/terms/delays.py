@@ -54,7 +54,7 @@ def delays(model: Model) -> Proposal | None:
     share = min(independent_share([r * c for r, c in counted], steps_s, noise), 1.0)
     for estimate in estimates:
         price = price_of_term(model.policy)
-        if estimate.drift == 0.0 and np.mean(estimate.late_s) > 0.0:
+        if estimate.drift == 0.0 and np.mean(estimate.delays_s) > 0.0:
             # The mean delay corresponds to an effect: add the threshold of an effect.
             price += model.price_of_effect
         price -= model.price_of_effect * max(model.reference.free - estimate.solution.free, 0)
@@ -121,10 +121,10 @@ def _significant(shifted: Shifted, policy: Policy) -> bool:
             special.chdtrc(1, square) < policy.terms.chance
             and special.chdtrc(1, joint_square) < policy.delays.hint_chance
         )
-    if np.ptp(shifted.late_s) == 0.0:
-        return bool(shifted.late_s[0] < 0.0)
+    if np.ptp(shifted.delays_s) == 0.0:
+        return bool(shifted.delays_s[0] < 0.0)
     step = run_delay_step(problem, solution)
-    return step.differences_p_value(shifted.late_s) < policy.terms.chance
+    return step.differences_p_value(shifted.delays_s) < policy.terms.chance
 
 
 def _gain(shifted: Shifted, other: Solution, share: float) -> float:
@@ -152,10 +152,10 @@ def _gain(shifted: Shifted, other: Solution, share: float) -> float:
 
 def _log_determinant(shifted: Shifted) -> float:
     """Log-determinant of the covariance of the delays; zero for a drift or equal delays."""
-    if shifted.drift != 0.0 or np.ptp(shifted.late_s) == 0.0:
+    if shifted.drift != 0.0 or np.ptp(shifted.delays_s) == 0.0:
         return 0.0
     step = run_delay_step(shifted.problem, shifted.solution)
-    delays_s = shifted.late_s[step.identifiable]
+    delays_s = shifted.delays_s[step.identifiable]
     if len(delays_s) < 2:
         return 0.0
     variance = float(np.var(delays_s, ddof=1))
@@ -164,25 +164,25 @@ def _log_determinant(shifted: Shifted) -> float:
 
 def _findings(before_s: dict[str, float], shifted: Shifted) -> list[Finding]:
     """Findings on the delays that changed, compared with the delays known before."""
-    late_s = [
+    delays_s = [
         late + before_s.get(p.run.name, 0.0)
-        for p, late in zip(shifted.campaign.prepared, shifted.late_s.tolist(), strict=True)
+        for p, late in zip(shifted.campaign.prepared, shifted.delays_s.tolist(), strict=True)
     ]
     return [
         _finding(p.run.name, late, shifted.drift)
-        for p, late in zip(shifted.campaign.prepared, late_s, strict=True)
+        for p, late in zip(shifted.campaign.prepared, delays_s, strict=True)
     ]
 
 
-def _finding(run: str, late_s: float, drift: float) -> Finding:
+def _finding(run: str, delay_s: float, drift: float) -> Finding:
     """Finding on the delay (s) and the relative clock drift of one run."""
     if drift == 0.0:
-        way = "late" if late_s > 0.0 else "early"
-        words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion"
-        return Finding(LATE, "friction_n", run, late_s, "s", "shifted", words)
+        way = "late" if delay_s > 0.0 else "early"
+        words = f"the force is {1e3 * abs(delay_s):.2g} ms {way} relative to the motion"
+        return Finding(LATE, "friction_n", run, delay_s, "s", "shifted", words)
     way = "slow" if drift > 0.0 else "fast"
     words = (
         f"the force clock is {1e6 * abs(drift):.0f} ppm {way} relative to the motion "
-        f"clock ({1e3 * late_s:+.2g} ms at mid-run)"
+        f"clock ({1e3 * delay_s:+.2g} ms at mid-run)"
     )
     return Finding(DRIFT, "friction_n", run, drift, "1", "shifted", words)

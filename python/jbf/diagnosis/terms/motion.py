@@ -13,7 +13,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.generalised_least_squares import (
     with_motion_errors,
-    with_recorded_motion,
+    without_motion_corrections,
 )
 from jbf.estimation.held_out import held_out_parts
 from jbf.estimation.held_out_comparison import predictive_deviance
@@ -35,7 +35,7 @@ def errors_of_motion(model: Model) -> Proposal | None:
     campaign, solution = model.campaign, model.solution
     if campaign.rig.drive is None:
         return None
-    again, after = with_motion_errors(*with_recorded_motion(model.problem, solution))
+    again, after = with_motion_errors(*without_motion_corrections(model.problem, solution))
     before, motion = campaign.samples.motion, after.samples.motion
     if before is None and motion is None:
         return None

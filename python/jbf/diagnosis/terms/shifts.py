@@ -45,7 +45,7 @@ class Shifted:
     ----------
     problem, solution
         The fit.
-    late_s
+    delays_s
         Corrected delay of each run, at mid-run, s.
     drift
         Corrected relative drift of the force clock.
@@ -53,7 +53,7 @@ class Shifted:
 
     problem: Problem
     solution: Solution
-    late_s: Array
+    delays_s: Array
     drift: float
 
     @property
@@ -62,7 +62,7 @@ class Shifted:
         return self.problem.campaign
 
 
-def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
+def possible_clocks(problem: Problem, delays_s: Array, drift: float) -> bool:
     """Whether estimated delays and a clock drift are physically plausible for a data logger.
 
     Larger estimates are artefacts of noise, if the force hardly depends on the motion, or of the
@@ -71,15 +71,16 @@ def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
     settings = problem.campaign.settings.delays
     return abs(drift) <= settings.max_drift and all(
         abs(late) + 0.5 * abs(drift) * p.run.duration_s <= settings.max_run_share * p.run.duration_s
-        for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
+        for p, late in zip(problem.campaign.prepared, delays_s.tolist(), strict=True)
     )
 
 
-def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
+def moved(problem: Problem, delays_s: Array, drift: float) -> Campaign:
     """Shift the force of each run to earlier times, by its delay and the clock drift."""
     prepared = problem.campaign.prepared
     return _settled(
-        problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
+        problem,
+        [p.shifted(late, drift) for p, late in zip(prepared, delays_s.tolist(), strict=True)],
     )
 
 
@@ -144,18 +145,18 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
         # Where delays differ between runs, a common delay is also attributed to the recording.
         values = now.problem.values_by_name(now.solution.values)
         later_s = np.clip(step.delays_s, -linear_s, linear_s) + values.get(TAU, 0.0)
-        late_s = now.late_s + later_s
-        late_s[~step.identifiable] = step.mean_s(late_s)
-        apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
+        delays_s = now.delays_s + later_s
+        delays_s[~step.identifiable] = step.mean_s(delays_s)
+        apart_s = float(np.max(np.abs(delays_s - np.median(delays_s))))
         if apart_s > settings.search_ranges_s[0][0] or not possible_clocks(
-            first, late_s, start.drift
+            first, delays_s, start.drift
         ):
             # Another deviation of one run, such as a mass, may appear as a delay of any size.
             return start
-        campaign = moved(first, late_s, start.drift)
+        campaign = moved(first, delays_s, start.drift)
         effects = without_delay(now.problem.effects)
         problem, solution = fitted_to_shifted(now.problem, campaign, effects, values, now.solution)
-        now = Shifted(problem, solution, late_s, start.drift)
+        now = Shifted(problem, solution, delays_s, start.drift)
     if white:
         now = _with_coloured_noise(now)
     return now if now.solution.rms < start.solution.rms else start
@@ -179,15 +180,15 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
             now = _with_coloured_noise(now)
             continue
         drift = now.drift + float(np.clip(step.drift, -most, most))
-        late_s = 0.5 * drift * lasts_s
-        if not possible_clocks(first, late_s, drift):
+        delays_s = 0.5 * drift * lasts_s
+        if not possible_clocks(first, delays_s, drift):
             return start
         values = now.problem.values_by_name(now.solution.values)
-        campaign = moved(first, late_s, drift)
+        campaign = moved(first, delays_s, drift)
         problem, solution = fitted_to_shifted(
             now.problem, campaign, now.problem.effects, values, now.solution
         )
-        now = Shifted(problem, solution, late_s, drift)
+        now = Shifted(problem, solution, delays_s, drift)
     if white:
         now = _with_coloured_noise(now)
     return now if now.solution.rms < start.solution.rms else start
@@ -196,8 +197,8 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
 def with_mean_delay(shifted: Shifted) -> Shifted:
     """Replace the delays of the runs by their mean, and refit the model."""
     problem, solution = shifted.problem, shifted.solution
-    mean_s = run_delay_step(problem, solution).mean_s(shifted.late_s)
-    change_s = mean_s - shifted.late_s
+    mean_s = run_delay_step(problem, solution).mean_s(shifted.delays_s)
+    change_s = mean_s - shifted.delays_s
     values = problem.values_by_name(solution.values)
     campaign = moved(problem, change_s, 0.0)
     again, fit = fitted_to_shifted(problem, campaign, problem.effects, values, solution)
@@ -218,7 +219,7 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
     """
     campaign = problem.campaign
     old, first = campaign, problem
-    late_s, drift = np.zeros(len(campaign.prepared)), 0.0
+    delays_s, drift = np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.delays.max_searches):
         scan = scan_delays(problem, solution, look, policy.terms.chance)
         if scan is None:
@@ -226,17 +227,17 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
         # Where delays differ between runs, a common delay is also attributed to the recording.
         values = problem.values_by_name(solution.values)
         shared = values.get(TAU, 0.0) if scan.spread_s > 0.0 else 0.0
-        later_s, drifted = late_s + np.array(scan.delays_s) + shared, drift + scan.drift
+        later_s, drifted = delays_s + np.array(scan.delays_s) + shared, drift + scan.drift
         if look > 0 and scan.drift != 0.0 and scan.spread_s == 0.0:
             # The drift was already corrected at the middle of the runs.
-            later_s = late_s
+            later_s = delays_s
         if not possible_clocks(first, later_s, drifted):
             break
-        late_s, drift = later_s, drifted
-        campaign = moved(first, late_s, drift)
+        delays_s, drift = later_s, drifted
+        campaign = moved(first, delays_s, drift)
         effects = without_delay(problem.effects)
         problem, solution = fitted_to_shifted(problem, campaign, effects, values, solution)
-    return None if campaign is old else Shifted(problem, solution, late_s, drift)
+    return None if campaign is old else Shifted(problem, solution, delays_s, drift)
 
 
 def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
@@ -248,8 +249,8 @@ def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     """
     steps = [p.step_s for p in problem.campaign.prepared]
     ahead_s = max(problem.campaign.settings.delays.reserve_s, float(np.median(steps)))
-    late_s = shifted.late_s - ahead_s
-    campaign = moved(problem, late_s, 0.0)
+    delays_s = shifted.delays_s - ahead_s
+    campaign = moved(problem, delays_s, 0.0)
     effects = without_delay(problem.effects)
     late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
     last = Problem(shifted.campaign, problem.law, problem.clock, effects)
@@ -258,12 +259,12 @@ def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     samples = late.samples_at(start)
     values = search(late, samples, start, shifted.solution.noise, EVALUATIONS).values
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
-    late_s = shifted.late_s + shared_s
-    if not possible_clocks(problem, late_s, 0.0):
+    delays_s = shifted.delays_s + shared_s
+    if not possible_clocks(problem, delays_s, 0.0):
         return shifted
-    campaign = moved(problem, late_s, 0.0)
+    campaign = moved(problem, delays_s, 0.0)
     near = late.values_by_name(values)
     again, solution = fitted_to_shifted(problem, campaign, effects, near, shifted.solution)
     if solution.rms >= shifted.solution.rms:
         return shifted
-    return Shifted(again, solution, late_s, 0.0)
+    return Shifted(again, solution, delays_s, 0.0)

@@ -55,10 +55,10 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
     return None
 
 
-def _finding(name: str, span: int, late_s: float) -> Finding:
+def _finding(name: str, span: int, delay_s: float) -> Finding:
     words = f"the speed is a difference of the position over {span} samples"
-    if late_s > 0.0:
-        words += f", {1e3 * late_s:.3g} ms late"
+    if delay_s > 0.0:
+        words += f", {1e3 * delay_s:.3g} ms late"
     done = "not used; the motion is derived from the position"
     return Finding("coarse_speed", "velocity_m_s", name, float(span), "samples", done, words)
 

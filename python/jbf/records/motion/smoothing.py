@@ -65,7 +65,7 @@ class Smoothed:
         states = posterior.mean, posterior.covariance, posterior.gain
         return cls(readings, errors, corners, speed, *states, of_motion)
 
-    def rougher(self, factor: float, *, same_corners: bool = False) -> Smoothed:
+    def with_scaled_intensity(self, factor: float, *, same_corners: bool = False) -> Smoothed:
         """Posterior of the same readings for the noise intensity times a factor.
 
         Parameters
@@ -80,7 +80,7 @@ class Smoothed:
             return Smoothed.of(self.readings, errors, self.corners, self.speed)
         return _smoothed(self.readings, errors, self.readings.corners(errors, LONG_PASSES))
 
-    def with_corners_of(self, forces: ForceReadings | None) -> Smoothed:
+    def with_corners_located_by(self, forces: ForceReadings | None) -> Smoothed:
         """Posterior of the same readings with corners where the forces require them.
 
         The forces determine the accelerations more exactly than the readings of the motion do. The

@@ -34,15 +34,15 @@ def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding
         key=lambda candidate: candidate[1],
         default=(0.0, np.inf),
     )
-    late_s, error_s = sharpest
+    delay_s, error_s = sharpest
     step_s = float(np.median(np.diff(time)))
-    if late_s < max(MIN_DELAY_ERRORS * error_s, MAX_DELAY * step_s):
+    if delay_s < max(MIN_DELAY_ERRORS * error_s, MAX_DELAY * step_s):
         return None
     words = (
-        f"the speed lags the position by {1e3 * late_s:.3g} ms: filtered, or a backward difference"
+        f"the speed lags the position by {1e3 * delay_s:.3g} ms: filtered, or a backward difference"
     )
     done = "not used; the motion is derived from the position"
-    return Finding("filtered_speed", "velocity_m_s", name, late_s, "s", done, words)
+    return Finding("filtered_speed", "velocity_m_s", name, delay_s, "s", done, words)
 
 
 def _speed_delay(c: Compared) -> tuple[float, float]:

@@ -67,7 +67,10 @@ class Hidden(Protocol):
         """Additional Coulomb friction, N m or N."""
 
     def drag(self, at: Course) -> float:
-        """Additional viscous friction, in the direction of motion, N m or N."""
+        """Additional viscous friction, with the sign of the velocity if it opposes it, N m or N."""
+
+    def viscous_factor(self, at: Course) -> float:
+        """Factor on all viscous friction at a state of the motion."""
 
     def factor(self, at: Course) -> float:
         """Factor on the total friction at a state of the motion."""
@@ -88,6 +91,9 @@ class Plain:
 
     def drag(self, at: Course) -> float:
         return 0.0
+
+    def viscous_factor(self, at: Course) -> float:
+        return 1.0
 
     def factor(self, at: Course) -> float:
         return 1.0
@@ -129,7 +135,7 @@ class ViscousAsymmetry(Plain):
         share = random.uniform(0.2, 0.4) * random.choice([-1.0, 1.0])
         return cls(share * (scale.viscous + 0.2 * scale.coulomb / scale.top))
 
-    def push(self, at: Course) -> float:
+    def drag(self, at: Course) -> float:
         return self.slope * abs(at.velocity)
 
 
@@ -138,16 +144,14 @@ class ViscousThinning(Plain):
     """Viscous friction that grows less than proportionally to the speed."""
 
     name: ClassVar[str] = "viscous_thinning"
-    viscous: float
     slowness: float
 
     @classmethod
     def draw(cls, scale: Scale, random: Rng) -> ViscousThinning:
-        return cls(scale.viscous, random.uniform(1.0, 3.0) / scale.top)
+        return cls(random.uniform(1.0, 3.0) / scale.top)
 
-    def drag(self, at: Course) -> float:
-        line = self.viscous * at.velocity
-        return line / (1.0 + self.slowness * abs(at.velocity)) - line
+    def viscous_factor(self, at: Course) -> float:
+        return 1.0 / (1.0 + self.slowness * abs(at.velocity))
 
 
 @dataclass(frozen=True)
@@ -292,6 +296,9 @@ class Together:
 
     def drag(self, at: Course) -> float:
         return sum(part.drag(at) for part in self.parts)
+
+    def viscous_factor(self, at: Course) -> float:
+        return math.prod(part.viscous_factor(at) for part in self.parts)
 
     def factor(self, at: Course) -> float:
         return math.prod(part.factor(at) for part in self.parts)

@@ -117,7 +117,7 @@ def run(
                 continue
             # All friction except the part proportional to speed, which is integrated in closed
             # form.
-            extra = factor * hidden.drag(at)
+            extra = factor * (hidden.viscous_factor(at) * (d * v + hidden.drag(at)) - d * v)
             slope = factor * d
             net = u - push - sign * f - extra
             # Losses are a share of the transmitted force: that of the weight and of the mass.

@@ -13,6 +13,8 @@ from servosim.hidden import (
     StribeckExcess,
     Together,
     TorqueProportional,
+    ViscousAsymmetry,
+    ViscousThinning,
     WarmUp,
 )
 from servosim.plant import Plant, run
@@ -121,6 +123,17 @@ def test_warm_up_decreases_all_friction_with_time() -> None:
     factor = 1.0 + 0.5 * np.exp(-3.0)
     assert velocity[0] == pytest.approx((2.8 / factor - 0.8) / 2.0, rel=0.03)
     assert velocity[1] == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_viscous_friction_of_both_directions_thins_and_warms_up(direction: float) -> None:
+    """The steady torque is (F_c + (F_v + sgn(v) b) |v| / (1 + w |v|)) (1 + a) when cold."""
+    effects = ViscousAsymmetry(-0.6), ViscousThinning(2.0), WarmUp(0.5, 1e6)
+    plant = hidden_in(Plant(0.5, 0.8, 2.0, 0.0, False), *effects)
+    speed = 1.5
+    torque = 1.5 * (0.8 + (2.0 - 0.6 * direction) * speed / (1.0 + 2.0 * speed))
+    motion = run(plant, lambda tick, x, v: direction * torque, 2e-3, 25_000, 0.0)
+    assert motion.velocity[-1] == pytest.approx(direction * speed, rel=1e-3)
 
 
 def test_hidden_effects_do_not_change_the_drawn_drive_and_logger() -> None:

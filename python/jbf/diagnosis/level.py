@@ -62,9 +62,11 @@ class Level:
     artefact_margin
         Gain that recording artefacts may add to the gain in white noise.
     min_gain
-        Gain of an effect of the minimum effect size.
+        Gain of an effect of the minimum effect size, from the independent samples.
     decoys, decoys_named
         Number of decoy campaigns, and number of those in which a decoy would have been named.
+    min_share
+        Share of the mean square that an effect of the minimum effect size explains.
     """
 
     false_alarm_rate: float
@@ -75,6 +77,7 @@ class Level:
     min_gain: float = 0.0
     decoys: int = 0
     decoys_named: int = 0
+    min_share: float = 0.0
 
     @classmethod
     def in_white_noise(
@@ -104,8 +107,15 @@ class Level:
         """
         least = max(policy.min_effect_share, policy.min_effect / max(noise_rms, 1e-300))
         chance = policy.false_alarm_rate / max(candidates, 1)
-        min_gain = max(least**2, least_share) * samples
-        return cls(policy.false_alarm_rate, candidates, chance, 0, policy.artefact_margin, min_gain)
+        share = max(least**2, least_share)
+        return cls(
+            policy.false_alarm_rate,
+            candidates,
+            chance,
+            artefact_margin=policy.artefact_margin,
+            min_gain=share * samples,
+            min_share=share,
+        )
 
     @property
     def critical(self) -> float:
@@ -125,14 +135,22 @@ class Level:
         """
         return max(self.critical, self.white_noise_threshold + self.artefact_margin)
 
-    def price(self, parameters: int, samples: int) -> float:
+    def price(self, parameters: int, samples: int, *, independent: bool = False) -> float:
         """Acceptance threshold for the gain of an effect with a given number of parameters.
 
         It is ``max(significant, min_gain)``, plus the penalty ``log(samples)`` of Schwarz (1978)
         for each parameter beyond the first.
+
+        Parameters
+        ----------
+        parameters, samples
+            Number of parameters of the effect, and of samples of the campaign.
+        independent
+            Whether the gain treats all samples as independent, for the minimum effect size.
         """
         more = max(parameters, 1) - 1
-        return max(self.significant, self.min_gain) + more * float(np.log(max(samples, 1)))
+        min_gain = self.min_share * samples if independent else self.min_gain
+        return max(self.significant, min_gain) + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""

@@ -4,7 +4,7 @@ use crate::pool::on_pool;
 use crate::share::longest_first;
 use jbf_motion::{ErrorChain, WhiteningFilter};
 use nalgebra::{SMatrix, Vector3};
-use numpy::ndarray::{Array2, ArrayView1, ArrayView3};
+use numpy::ndarray::{ArrayView1, ArrayView2, ArrayView3};
 use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -186,13 +186,12 @@ impl MotionWhitening {
         columns: Vec<PyReadonlyArray2<'py, f64>>,
         runs: Vec<usize>,
     ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
-        let arrays: Vec<(&Filter, Array2<f64>)> = runs
+        let arrays: Vec<(&Filter, ArrayView2<'_, f64>)> = runs
             .iter()
             .zip(&columns)
             .map(|(&run, c)| match self.lengths.get(run) {
                 Some(&length) if length == c.as_array().nrows() => {
-                    let standard = c.as_array().as_standard_layout().into_owned();
-                    Ok((&self.filters[run], standard))
+                    Ok((&self.filters[run], c.as_array()))
                 }
                 length => Err(PyValueError::new_err(format!(
                     "run {run} of {length:?} samples, columns {:?}",
@@ -200,9 +199,9 @@ impl MotionWhitening {
                 ))),
             })
             .collect::<PyResult<_>>()?;
-        let size = |(_, c): &(&Filter, Array2<f64>)| c.len();
-        let whitened = |(filter, c): &(&Filter, Array2<f64>)| {
-            let mut white = c.clone();
+        let size = |(_, c): &(&Filter, ArrayView2<'_, f64>)| c.len();
+        let whitened = |(filter, c): &(&Filter, ArrayView2<'_, f64>)| {
+            let mut white = c.as_standard_layout().into_owned();
             if let Some(values) = white.as_slice_mut() {
                 filter.whiten(c.ncols(), values);
             }

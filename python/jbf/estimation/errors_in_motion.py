@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -116,6 +117,11 @@ class Whitening:
     noise: float
     by_delay: tuple[Array, ...] | None
 
+    @cached_property
+    def _included(self) -> list[npt.NDArray[np.intp]]:
+        """Indices of the samples with a weight, one array per run."""
+        return [np.flatnonzero(w) for w in self.weights]
+
     def stacked(
         self,
         residuals: Sequence[Array],
@@ -146,7 +152,7 @@ class Whitening:
             columns.append(np.column_stack(parts))
         whitened = self.core.whiten(columns, runs)
         stacked = np.concatenate(
-            [white[self.weights[i] > 0.0] for i, white in zip(runs, whitened, strict=True)]
+            [white.take(self._included[i], axis=0) for i, white in zip(runs, whitened, strict=True)]
         )
         if self.by_delay is not None:
             delay = stacked[:, -1]
@@ -170,5 +176,5 @@ class Whitening:
     @property
     def log_determinant(self) -> float:
         """Logarithm of the determinant of the covariance of the residuals."""
-        count = sum(int(np.count_nonzero(w)) for w in self.weights)
+        count = sum(map(len, self._included))
         return self.core.log_determinant + 2.0 * count * float(np.log(self.noise))

@@ -295,7 +295,8 @@ def bounded(jacobian: Array, scale: Array) -> Array:
     """
     with np.errstate(over="ignore", invalid="ignore"):
         derivatives: Array = jacobian * scale
-        if np.max(np.abs(derivatives), initial=0.0) < BOUNDLESS:
+        largest = max(np.max(derivatives, initial=0.0), -np.min(derivatives, initial=0.0))
+        if largest < BOUNDLESS:
             return derivatives
     return np.where(np.abs(derivatives) < BOUNDLESS, derivatives, 0.0)
 

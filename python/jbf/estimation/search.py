@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import optimize
 
+from jbf.estimation.least_squares import unexplained_square
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
@@ -127,6 +128,10 @@ class _Joined(Exception):
     """Signal that a search has reached a point that another search has visited."""
 
 
+class _Converged(Exception):
+    """Signal that a Gauss-Newton step would reduce the sum of squares by less than `ENDED`."""
+
+
 def search(
     problem: Problem,
     samples: Samples,
@@ -177,14 +182,18 @@ def search(
 
     def jacobian(x: Array) -> Array:
         """Jacobian of the innovations at the variables `x`, in triangular form."""
-        return evaluate(x).jacobian
+        point = evaluate(x)
+        left = unexplained_square(point.jacobian, point.residual)
+        if point.square - left <= ENDED * point.square:
+            raise _Converged
+        return point.jacobian
 
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
     x0 = problem.encode(start)
     margin = 1e-9 * np.maximum(np.abs(high - low), 1.0)
     margin = np.minimum(margin, 0.25 * (high - low))
     try:
-        result = optimize.least_squares(
+        end = optimize.least_squares(
             residual,
             np.clip(x0, low + margin, high - margin),
             jac=jacobian,
@@ -198,14 +207,16 @@ def search(
             gtol=1e-12,
             max_nfev=evaluations,
         )
+        values = problem.decode(end.x, start)
+        found = SearchResult(values, bool(end.status > 0), str(end.message))
     except _Joined:
         least = min(path, key=lambda point: point.square)
         return SearchResult(least.values, False, "joined another search")
+    except _Converged:
+        found = SearchResult(path[-1].values, True, "converged")
     if visited is not None:
         memory.ended.append(path)
-    return SearchResult(
-        problem.decode(result.x, start), bool(result.status > 0), str(result.message)
-    )
+    return found
 
 
 def _key(values: Array) -> bytes:

@@ -27,7 +27,7 @@ class Driven:
 
     def at_samples(self, values: Array) -> Array:
         """Select the values at the samples of the run from those at all instants of the core."""
-        return values if self.kept is None else np.ascontiguousarray(values[self.kept])
+        return values if self.kept is None else values.take(self.kept, axis=0)
 
 
 class DrivenChain:

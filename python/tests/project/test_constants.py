@@ -45,7 +45,7 @@ NUMERICAL = {
         diagnosis.terms.shifts: SETTLED
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
-        estimation.generalised_least_squares: SETTLED DELAY_STEP
+        estimation.delayed_fits: SETTLED DELAY_STEP
         estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
@@ -64,7 +64,7 @@ NUMERICAL = {
         estimation.parallel_fits: MOST_AT_ONCE
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
-        estimation.generalised_least_squares: ROUNDS EVALUATIONS
+        estimation.delayed_fits: ROUNDS EVALUATIONS
         estimation.held_out: EVALUATIONS
         estimation.least_squares: MOST_HELD MOST_SEARCHED GROUP
         estimation.minimum: TRIAL_EVALUATIONS FOLLOWED MANY LIKELY LOOKED MAX_EVALUATIONS
@@ -86,7 +86,8 @@ NUMERICAL = {
         diagnosis.residual_structure.periodic: MOST_BINS PADDING
         estimation.delays: FINE_S
         estimation.delay_scan: COARSE FINE
-        estimation.generalised_least_squares: INTENSITY_STEP DELAY_SPAN
+        estimation.delayed_fits: DELAY_SPAN
+        estimation.generalised_least_squares: INTENSITY_STEP
         estimation.posterior_motions: STEP
         estimation.identifiability: SHARES
         estimation.pitches: MOST_BINS PADDING

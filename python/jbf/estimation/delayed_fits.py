@@ -1,0 +1,271 @@
+"""Generalised least-squares fits with a given or an estimated delay of the force.
+
+A drive's force may be recorded with a delay common to all runs, or on the clock of either channel
+of the motion. The errors of the motion are estimated with each delay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize
+
+from jbf.estimation.delays import delay_slope
+from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.motion_error_scale import estimate_motion_errors
+from jbf.estimation.noise import WHITE
+from jbf.estimation.parallel_fits import fits_at_once, in_parallel
+from jbf.estimation.posterior_motions import corrected_for_delay, shifted
+from jbf.estimation.problem import Problem
+from jbf.estimation.search import search
+from jbf.estimation.solution import Solution
+from jbf.models.delayed_reading import TAU
+
+Array = npt.NDArray[np.float64]
+ROUNDS = 8
+"""Largest number of iterations of sensitivities and fits. It limits the effort only."""
+SETTLED = 0.01
+"""Change of the prediction, relative to the noise, at which the iteration stops.
+
+It is a numerical tolerance.
+"""
+EVALUATIONS = 20
+"""Evaluations of each fit. It limits the effort only."""
+DELAY_STEP = 0.02
+"""Tolerance of a delay of the force, in sampling intervals. It is a numerical tolerance."""
+DELAY_SPAN = 0.1
+"""Half-width of the central difference of the sum of squares with respect to the delay.
+
+It is in sampling intervals, and is a numerical resolution.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class DelayedFit:
+    """Fit with a given delay of the force.
+
+    Attributes
+    ----------
+    first, problem
+        The original problem, and the one with the force's delay corrected.
+    solution
+        The fit.
+    delay_s
+        Delay of the force, s.
+    delayed
+        Whether the delay was estimated.
+    """
+
+    first: Problem
+    problem: Problem
+    solution: Solution
+    delay_s: float
+    delayed: bool
+
+    @cached_property
+    def motion(self) -> ErrorsInMotion:
+        """Errors of the motion with which the solution was fitted, or estimated without them."""
+        motion = self.solution.samples.motion
+        return motion or estimate_motion_errors(self.problem, self.solution)
+
+    @cached_property
+    def deviance(self) -> float:
+        """Minus twice the log likelihood, up to a constant, for all samples before the shift.
+
+        A shift drops readings: the deviance per sample is multiplied by the number before it.
+        """
+        samples = self.first.samples_at(self.solution.values)
+        counts = [sum(map(np.count_nonzero, s.weight)) for s in (samples, self.solution.samples)]
+        return self.deviance_at(self.solution.samples.weight) * counts[0] / max(counts[1], 1)
+
+    def deviance_at(self, weights: Sequence[Array]) -> float:
+        """Minus twice the log likelihood of the samples with these weights, one array per run."""
+        return self.motion.whitening(weights).deviance(self.solution.residuals)
+
+
+def fits_on_clocks(
+    first: Problem, solution: Solution, clocks_s: Sequence[float]
+) -> list[DelayedFit]:
+    """Fit with the force on each clock, or with a significant delay common to all runs instead.
+
+    The delay is used if it is significant, and likelier at the samples of both fits.
+
+    Parameters
+    ----------
+    clocks_s
+        Delay of each possible clock of the force, s.
+    """
+    at_once = fits_at_once(first.campaign, first.law, first.effects)
+    fits = list(in_parallel(lambda c: iterated(first, solution, c), clocks_s, at_once))
+    settings = first.campaign.settings.motion
+    if TAU in first.names or not first.campaign.force_has_clock:
+        return fits
+    shares = [fit.motion.variance_share(fit.solution.samples.weight) for fit in fits]
+    tested = [
+        k
+        for k, (fit, share) in enumerate(zip(fits, shares, strict=True))
+        if fit.delay_s != 0.0 or share >= settings.min_delay_share
+    ]
+    if not tested:
+        return fits
+    likeliest = _likeliest_delay(first, fits[0].solution, at_once)
+    delay_s, sd_s = _fixed_point_delay(likeliest)
+    tested = [k for k in tested if abs(delay_s - clocks_s[k]) >= settings.min_delay_sigma * sd_s]
+    if not tested:
+        return fits
+    readings, near = likeliest.first, likeliest.solution
+    delayed = iterated(readings, near, delay_s)
+    end = iterated(first, delayed.solution, delay_s, delayed=True)
+    for k in tested:
+        without = iterated(readings, near, clocks_s[k])
+        used = (fit.solution.samples.weight for fit in (without, delayed))
+        weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
+        if delayed.deviance_at(weights) <= without.deviance_at(weights):
+            fits[k] = end
+    return fits
+
+
+def _longest_delay_s(problem: Problem) -> tuple[float, float]:
+    """Largest absolute delay of the force that is tried, and the sampling interval, s."""
+    step_s = min(p.step_s for p in problem.campaign.prepared)
+    return problem.campaign.settings.motion.max_delay_samples * step_s, step_s
+
+
+def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> DelayedFit:
+    """Return the likeliest of several delays of the force, half a sampling interval apart.
+
+    The force of an abrupt motion is not linear in a delay. All delays are compared at the same
+    readings.
+    """
+    max_delay_s, step_s = _longest_delay_s(first)
+    margin_s = max_delay_s + step_s
+    readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
+    tried_s = np.arange(-max_delay_s + 0.25 * step_s, max_delay_s, 0.5 * step_s).tolist()
+    fits = in_parallel(lambda s: iterated(readings, solution, s, rounds=1), tried_s, at_once)
+    return min(fits, key=lambda fit: fit.deviance)
+
+
+def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
+    """Solve for the delay that is its own generalised least-squares estimate.
+
+    The estimate has the covariance of a fit with this delay. It is the root of the derivative of
+    the whitened sum of squares at fixed covariance. The maximum of the likelihood is less accurate:
+    the covariance, and with it the likelihood, is discontinuous where a sample crosses a corner of
+    the motion.
+
+    Parameters
+    ----------
+    start
+        Fit with the delay at which the search begins. The root is at most half a sampling interval
+        from it.
+
+    Returns
+    -------
+    tuple[float, float]
+        Delay and its standard error, s. The standard error is infinite if the derivative has no
+        root near the start.
+    """
+    max_delay_s, step_s = _longest_delay_s(start.first)
+    span_s = DELAY_SPAN * step_s
+    references = {start.delay_s: start}
+
+    def squares(delay_s: float, offsets: Sequence[float]) -> Array:
+        """Sums of squares, relative to the noise variance, at offsets in units of `span_s`."""
+        if delay_s not in references:
+            references[delay_s] = iterated(start.first, start.solution, delay_s, rounds=1)
+        return _squares(references[delay_s], delay_s + span_s * np.array(offsets))
+
+    @cache
+    def slope(delay_s: float) -> float:
+        """Central difference of the sum of squares."""
+        before, after = squares(delay_s, [-1.0, 1.0])
+        return float(after - before)
+
+    other_s = start.delay_s + (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
+    other_s = min(max(other_s, -max_delay_s), max_delay_s)
+    if slope(start.delay_s) * slope(other_s) >= 0.0:
+        return start.delay_s, np.inf
+    delay_s = float(optimize.brentq(slope, start.delay_s, other_s, xtol=DELAY_STEP * step_s))
+    before, at, after = squares(delay_s, [-1.0, 0.0, 1.0])
+    # The sum of squares rises by one at one standard error.
+    curvature = 0.5 * (before + after) - at
+    return delay_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
+
+
+def _squares(reference: DelayedFit, delays_s: Array) -> Array:
+    """Whitened sums of squares, divided by the noise variance, for several delays of the force.
+
+    Covariance and weights are those of the reference fit. The other parameters are fitted in linear
+    approximation. The samples are those that all delays use.
+    """
+    problem, samples, motion = reference.first, reference.solution.samples, reference.motion
+    fits = [
+        near_solution(shifted(problem, float(delay_s)), reference.solution) for delay_s in delays_s
+    ]
+    used = samples.within(
+        [np.all(c, axis=0) for c in zip(*(f.samples.counted for f in fits), strict=True)]
+    )
+    whitening = motion.whitening([w * c for w, c in zip(used.weight, used.counted, strict=True)])
+    rows = (whitening.stacked(fit.residuals, fit.jacobian) for fit in fits)
+    return np.array([unexplained_square(j, r) for r, j in rows]) / motion.noise**2
+
+
+def iterated(
+    first: Problem,
+    solution: Solution,
+    delay_s: float,
+    *,
+    delayed: bool = False,
+    rounds: int = ROUNDS,
+) -> DelayedFit:
+    """Iterate the fit with a delay `delay_s` of the force.
+
+    Parameters
+    ----------
+    delayed
+        Whether the delay was estimated, and is uncertain.
+    rounds
+        Largest number of iterations.
+    """
+    settings = first.campaign.settings.motion
+    problem = shifted(first, delay_s) if delay_s != 0.0 else first
+    solution = near_solution(problem, solution)
+    for _ in range(rounds):
+        motion = estimate_motion_errors(problem, solution)
+        if delay_s == 0.0 and motion.variance_share(solution.samples.weight) < settings.min_share:
+            break
+        before, solution = solution, fit_with_errors(problem, solution, motion, delayed=delayed)
+        changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
+        if solution.samples.rms(changes) < SETTLED * motion.noise:
+            break
+    return DelayedFit(first, problem, solution, delay_s, delayed)
+
+
+def near_solution(problem: Problem, solution: Solution) -> Solution:
+    """Residuals and Jacobian of a problem at the parameter values of another solution."""
+    return problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
+
+
+def fit_with_errors(
+    problem: Problem, near: Solution, motion: ErrorsInMotion, *, delayed: bool = False
+) -> Solution:
+    """Generalised least-squares fit near a solution, with Huber weights."""
+    prepared, values = problem.campaign.prepared, near.values
+    if delayed:
+        slopes = tuple(delay_slope(problem, values, p) for p in prepared)
+        motion = replace(motion, by_delay=slopes)
+    plain, weights = problem.samples_at(values), []
+    huber = problem.campaign.settings.motion.huber_sigma
+    for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
+        sd = motion.noise * np.sqrt(1.0 + motion.variance_ratio(i))
+        ratio = np.maximum(np.abs(residual) / sd, 1e-300)
+        weights.append(weight * np.sqrt(np.minimum(1.0, huber / ratio)))
+    samples = replace(plain, weight=tuple(weights), motion=motion)
+    end = search(problem, samples, values, WHITE, EVALUATIONS)
+    values = problem.wrapped(end.values)
+    return problem.solution(values, samples, WHITE, end.converged, end.message)

@@ -35,6 +35,8 @@ hundredth. It is a numerical tolerance.
 """
 ENDED = 1e-6
 """Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
+STATIONARY = 1e-8
+"""Predicted relative decrease below which a point is a minimum. It is a numerical tolerance."""
 REACH = 5.0
 """Range of a scan for other maxima, as a factor on the value upwards and downwards.
 
@@ -129,7 +131,7 @@ class _Joined(Exception):
 
 
 class _Converged(Exception):
-    """Signal that a Gauss-Newton step would reduce the sum of squares by less than `ENDED`."""
+    """Signal that a Gauss-Newton step would reduce the sum of squares by less than `STATIONARY`."""
 
 
 def search(
@@ -184,7 +186,7 @@ def search(
         """Jacobian of the innovations at the variables `x`, in triangular form."""
         point = evaluate(x)
         left = unexplained_square(point.jacobian, point.residual)
-        if point.square - left <= ENDED * point.square:
+        if point.square - left <= STATIONARY * point.square:
             raise _Converged
         return point.jacobian
 

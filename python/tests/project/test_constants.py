@@ -52,7 +52,7 @@ NUMERICAL = {
         estimation.motion_error_scale: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS
         estimation.random_effects: ROUNDING
-        estimation.search: NEAR SAME ENDED
+        estimation.search: NEAR SAME ENDED STATIONARY
         estimation.standard_errors: INSENSITIVE SINGULAR TAKES_PART
         estimation.starting_values: SHORTEST_M
     """,

@@ -274,6 +274,9 @@ def _square(problem: Problem, thinned: Problem, visited: Visited, values: Array)
 def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> Solution:
     """Continue from a solution to convergence, with coloured noise.
 
+    The noise is white if the estimates with coloured noise increase the RMS too much: the residual
+    then contains a missing effect rather than noise.
+
     Parameters
     ----------
     samples
@@ -296,6 +299,8 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         if problem.square(coloured.values, samples) <= most:
             end = coloured
             noise = noise_at(problem, samples, end.values)
+        else:
+            noise = WHITE
     return problem.solution(problem.wrapped(end.values), samples, noise, end.converged, end.message)
 
 

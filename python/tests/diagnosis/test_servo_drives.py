@@ -12,6 +12,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.which_law import held_out_errors
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.generalised_least_squares import with_motion_errors
+from jbf.estimation.likelihood import next_step_gain
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
 
@@ -225,3 +226,12 @@ def test_filtered_differences_of_coarse_counts_do_not_make_the_motion_rough() ->
         reading = np.std(record.velocity - record.true_velocity)
         true = np.interp(p.run.time_s, record.time_s, record.true_velocity)
         assert np.std(p.motion.velocity - true) < 0.4 * reading
+
+
+def test_fit_is_a_minimum_for_its_noise_where_coloured_noise_is_refused() -> None:
+    """Late stamps make the acceleration errors correlated, like coloured noise of the force."""
+    rig, runs = recorded(4909)
+    campaign = Campaign.prepare(rig, runs[:2])
+    problem = Problem(campaign, "coulomb", "journal", ("inertia", "gravity"))
+    fitted = minimum(problem, [{}])
+    assert next_step_gain(fitted) == pytest.approx(0.0, abs=0.1)

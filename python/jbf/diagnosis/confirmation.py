@@ -101,15 +101,18 @@ class Confirmation:
             _chance(ratios, settings.min_units),
         )
 
-    def units_confirm(self, chance: float) -> bool:
+    def units_confirm(self, chance: float, min_share: float) -> bool:
         """Whether the held-out errors decrease significantly over the independent units.
 
         Parameters
         ----------
         chance
             Significance level.
+        min_share
+            Minimum relative decrease of the held-out mean square.
         """
-        return self.chance < chance and self.after_n < self.before_n
+        most = (1.0 - min_share) * self.before_n**2
+        return self.chance < chance and self.after_n**2 < most
 
     def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
         """Whether the held-out runs confirm a candidate.

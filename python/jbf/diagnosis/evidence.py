@@ -79,8 +79,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     samples = common_samples(richer.samples, simpler.samples)
     before, after = (samples.cost(s.residuals, WHITE) for s in (simpler, richer))
     gain = min(before - after, robust_gain(richer, simpler))
-    parameters, count = richer.free - simpler.free, candidates.campaign.samples.count
-    return gain - candidates.level.price(parameters, count, independent=True)
+    return gain - price_of(candidates, richer.free - simpler.free)
 
 
 def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:

@@ -135,22 +135,14 @@ class Level:
         """
         return max(self.critical, self.white_noise_threshold + self.artefact_margin)
 
-    def price(self, parameters: int, samples: int, *, independent: bool = False) -> float:
+    def price(self, parameters: int, samples: int) -> float:
         """Acceptance threshold for the gain of an effect with a given number of parameters.
 
         It is ``max(significant, min_gain)``, plus the penalty ``log(samples)`` of Schwarz (1978)
         for each parameter beyond the first.
-
-        Parameters
-        ----------
-        parameters, samples
-            Number of parameters of the effect, and of samples of the campaign.
-        independent
-            Whether the gain treats all samples as independent, for the minimum effect size.
         """
         more = max(parameters, 1) - 1
-        min_gain = self.min_share * samples if independent else self.min_gain
-        return max(self.significant, min_gain) + more * float(np.log(max(samples, 1)))
+        return max(self.significant, self.min_gain) + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""

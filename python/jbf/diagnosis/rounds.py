@@ -210,7 +210,8 @@ def _with_leader(candidates: Candidates, present: Names, trial_round: Round) -> 
     """Return the model with the effect selected in a round, without unnecessary effects.
 
     A candidate that is tied with the leader is used instead if the resulting model has fewer
-    effects or parameters and predicts held-out runs equally well.
+    effects or parameters and predicts held-out runs equally well. Where the errors of the motion
+    are a part of the held-out errors, so is the difference that is allowed between them.
     """
     tied = [t.effect for t in trial_round.trials if t.outcome == "ties"]
     models: list[Names] = []
@@ -221,10 +222,10 @@ def _with_leader(candidates: Candidates, present: Names, trial_round: Round) -> 
         models.append(reconsider(candidates, (*present, name), trial_round.unconfirmed))
     errors = [candidates.held_out_rms(model) for model in models]
     # A tied candidate has not been confirmed by held-out runs.
+    share = candidates.policy.least_share(candidates.campaign.motion_share)
+    ratio = max(candidates.policy.laws.same_ratio, (1.0 + share) ** 0.5)
     equal = [
-        model
-        for model, error in zip(models, errors, strict=True)
-        if error <= candidates.policy.laws.same_ratio * errors[0]
+        model for model, error in zip(models, errors, strict=True) if error <= ratio * errors[0]
     ]
     return min(equal, key=lambda model: (len(model), candidates.converge(model).free))
 

@@ -185,8 +185,9 @@ def _by_units(
 
 
 def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
-    """Whether an effect added to `rest` significantly improves predictions of independent units."""
-    return candidates.confirmation(rest, name).units_confirm(candidates.level.chance)
+    """Whether an effect of at least the minimum size improves predictions of independent units."""
+    level = candidates.level
+    return candidates.confirmation(rest, name).units_confirm(level.chance, level.min_share)
 
 
 def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:

@@ -40,15 +40,22 @@ def test_strokes_are_the_independent_units_if_there_are_few_runs() -> None:
     """Three runs of six seconds at 2, 2.2 and 2.4 rad/s have four or five strokes each."""
     found = candidates(3, 0.3).confirmation((), OFFSET)
     assert 12 <= found.units <= 15
-    assert found.units_confirm(1e-3)
+    assert found.units_confirm(1e-3, 0.0)
+
+
+def test_significant_effect_below_the_minimum_size_is_not_confirmed() -> None:
+    found = candidates(8, 0.3).confirmation((), OFFSET)
+    explained = 1.0 - (found.after_n / found.before_n) ** 2
+    assert found.units_confirm(1e-3, 0.9 * explained)
+    assert not found.units_confirm(1e-3, 1.1 * explained)
 
 
 def test_absent_effect_is_not_confirmed() -> None:
-    assert not candidates(12, 0.0).confirmation((), OFFSET).units_confirm(1e-3)
+    assert not candidates(12, 0.0).confirmation((), OFFSET).units_confirm(1e-3, 0.0)
 
 
 def test_effect_is_not_confirmed_by_fewer_than_six_units() -> None:
     """Two runs that contain fewer than two strokes each."""
     found = candidates(2, 1.0, seconds=1.5).confirmation((), OFFSET)
     assert found.units < 6
-    assert not found.units_confirm(0.5)
+    assert not found.units_confirm(0.5, 0.0)

@@ -70,13 +70,6 @@ def test_threshold_in_a_long_recording_is_the_minimum_effect_size() -> None:
     assert short == pytest.approx(stats.chi2.isf(0.01 / 20, 1) + 22.0)
 
 
-def test_minimum_size_of_a_gain_from_all_samples_does_not_depend_on_the_autocorrelation() -> None:
-    """With a tenth of the samples independent, the minimum of a full gain is ten times larger."""
-    level = Level.in_white_noise(DEFAULT, 20, 1e4, 0.5, least_share=0.01)
-    assert level.price(1, 100_000) == pytest.approx(100.0)
-    assert level.price(1, 100_000, independent=True) == pytest.approx(1000.0)
-
-
 def _shapes() -> list[Array]:
     """Derivatives of the force by eight candidates: waves, a square wave and bumps."""
     waves = [np.sin((0.3 + 0.1 * k) * TIME + k) for k in range(TESTED - 2)]

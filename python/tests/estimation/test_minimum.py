@@ -11,9 +11,9 @@ from coulomb_problems import HELD, STEP_S, autoregressive, coulomb_problem
 from jbf import Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_by_run
-from jbf.estimation.likelihood import likelihood_gain
+from jbf.estimation.likelihood import likelihood_gain, noise_at
 from jbf.estimation.minimum import approach, minimum, search_peaks, settle
-from jbf.estimation.noise import Noise
+from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.robust_fit import best_weighting, huber, student
 from jbf.estimation.search import other_peaks
@@ -62,11 +62,13 @@ def test_fit_is_weighted_by_coloured_noise_only_if_the_rms_hardly_increases() ->
     for seed in (1, 3, 4, 6):
         noise = [autoregressive(10 * seed + i, 0.3, 0.5, 501) for i in range(4)]
         problem, found = fitted(runs_with(lambda i, run, noise=noise: noise[i], seed))  # type: ignore[misc]
-        assert found.noise.colour > 0.0
-        assert 0.1 < found.noise.memory_s < 0.6
-        generalised, residual = regression(problem, found.noise)
+        coloured = noise_at(problem, found.samples, found.values)
+        assert coloured.colour > 0.0
+        assert 0.1 < coloured.memory_s < 0.6
+        generalised, residual = regression(problem, coloured)
         plain, least = regression(problem)
         allowed = rms(residual) < SETTINGS.noise.max_rms_ratio * rms(least)
+        assert found.noise == (coloured if allowed else WHITE)
         weighted += allowed
         wanted, other = (generalised, plain) if allowed else (plain, generalised)
         assert abs(found.values[2] - wanted[1]) < 0.1 * abs(found.values[2] - other[1])
@@ -77,9 +79,11 @@ def test_fit_is_weighted_by_coloured_noise_only_if_the_rms_hardly_increases() ->
 def test_fit_of_a_wrong_law_is_not_weighted_by_the_coloured_noise_model(height: float) -> None:
     runs = runs_with(lambda i, r: height * np.sign(r.velocity) * np.exp(-r.time_s / 2.0))
     problem, found = fitted(runs)
-    assert found.noise.colour > 0.0
+    assert found.noise == WHITE
+    noise = noise_at(problem, found.samples, found.values)
+    assert noise.colour > 0.0
     values, least = regression(problem)
-    _, coloured = regression(problem, found.noise)
+    _, coloured = regression(problem, noise)
     # With weights for this colour the fit would be far worse.
     assert rms(coloured) > 1.1 * SETTINGS.noise.max_rms_ratio * rms(least)
     assert found.rms <= SETTINGS.noise.max_rms_ratio * rms(least)

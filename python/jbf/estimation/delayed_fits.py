@@ -101,7 +101,7 @@ def fits_on_clocks(
         Delay of each possible clock of the force, s.
     """
     at_once = fits_at_once(first.campaign, first.law, first.effects)
-    fits = list(in_parallel(lambda c: iterated(first, solution, c), clocks_s, at_once))
+    fits = list(in_parallel(lambda c: fit_with_delay(first, solution, c), clocks_s, at_once))
     settings = first.campaign.settings.motion
     if TAU in first.names or not first.campaign.force_has_clock:
         return fits
@@ -119,10 +119,10 @@ def fits_on_clocks(
     if not tested:
         return fits
     readings, near = likeliest.first, likeliest.solution
-    delayed = iterated(readings, near, delay_s)
-    end = iterated(first, delayed.solution, delay_s, delayed=True)
+    delayed = fit_with_delay(readings, near, delay_s)
+    end = fit_with_delay(first, delayed.solution, delay_s, delayed=True)
     for k in tested:
-        without = iterated(readings, near, clocks_s[k])
+        without = fit_with_delay(readings, near, clocks_s[k])
         used = (fit.solution.samples.weight for fit in (without, delayed))
         weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
         if delayed.deviance_at(weights) <= without.deviance_at(weights):
@@ -146,7 +146,7 @@ def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> Delaye
     margin_s = max_delay_s + step_s
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
     tried_s = np.arange(-max_delay_s + 0.25 * step_s, max_delay_s, 0.5 * step_s).tolist()
-    fits = in_parallel(lambda s: iterated(readings, solution, s, rounds=1), tried_s, at_once)
+    fits = in_parallel(lambda s: fit_with_delay(readings, solution, s, rounds=1), tried_s, at_once)
     return min(fits, key=lambda fit: fit.deviance)
 
 
@@ -177,7 +177,7 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     def squares(delay_s: float, offsets: Sequence[float]) -> Array:
         """Sums of squares, relative to the noise variance, at offsets in units of `span_s`."""
         if delay_s not in references:
-            references[delay_s] = iterated(start.first, start.solution, delay_s, rounds=1)
+            references[delay_s] = fit_with_delay(start.first, start.solution, delay_s, rounds=1)
         return _squares(references[delay_s], delay_s + span_s * np.array(offsets))
 
     @cache
@@ -215,7 +215,7 @@ def _squares(reference: DelayedFit, delays_s: Array) -> Array:
     return np.array([unexplained_square(j, r) for r, j in rows]) / motion.noise**2
 
 
-def iterated(
+def fit_with_delay(
     first: Problem,
     solution: Solution,
     delay_s: float,

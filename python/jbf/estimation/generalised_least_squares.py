@@ -15,9 +15,9 @@ import numpy.typing as npt
 from jbf.estimation.delayed_fits import (
     EVALUATIONS,
     DelayedFit,
+    fit_with_delay,
     fit_with_errors,
     fits_on_clocks,
-    iterated,
     near_solution,
 )
 from jbf.estimation.motion_error_scale import estimate_motion_errors, penalised_deviance
@@ -135,7 +135,7 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     located = with_corners_located_by_forces(end.problem, end.solution, motion)
     again = with_posteriors(first, posteriors(located))
     near = near_solution(again, end.solution)
-    return iterated(again, near, end.delay_s, delayed=end.delayed)
+    return fit_with_delay(again, near, end.delay_s, delayed=end.delayed)
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

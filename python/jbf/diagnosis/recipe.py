@@ -38,14 +38,20 @@ from jbf.diagnosis.verdict import (
     limitations,
     verdict,
 )
-from jbf.diagnosis.which_law import LawTried, comparable, followed, simpler_law, which_law
+from jbf.diagnosis.which_law import (
+    LawTried,
+    comparable,
+    followed,
+    laws_to_diagnose,
+    simpler_law,
+    which_law,
+)
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
-from jbf.estimation.initial_state import initial_memory
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
-from jbf.models.catalogue import find_clock, find_law
+from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig, default_law
 from jbf.models.vocabulary import AUTO, Clock
 from jbf.records.arguments import check_callable, list_of_runs, of_kind
@@ -171,7 +177,7 @@ def _diagnose(
     if law == AUTO:
         with_motion_errors = comparable(recorded, clock, policy)
         laws, no_law = which_law(with_motion_errors, clock, policy, progress)
-        names = _to_diagnose(laws)
+        names = laws_to_diagnose(laws)
         margin = max(margin, (1.0 + policy.least_share(with_motion_errors.motion_share)) ** 0.5)
     best: Diagnosis | None = None
     for name in names:
@@ -206,15 +212,6 @@ def _diagnose(
         unfinished=(*(name for name in no_law if name not in unfit), *best.unfinished),
         elapsed_s=time.monotonic() - begun,
     )
-
-
-def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
-    """Names of the laws to diagnose: the selected one, preceded by a memoryless one if elastic."""
-    first = laws[0].law
-    if not find_law(first).has_bristle:
-        return (first,)
-    without = [t.law for t in laws if initial_memory(t.law, ()) is None]
-    return (*without[:1], first)
 
 
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:

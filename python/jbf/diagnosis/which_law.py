@@ -55,12 +55,15 @@ class LawTried:
         Held-out RMS on the samples common to all laws, N.
     tied
         Whether the error is not significantly larger than that of the best law.
+    rises
+        Whether the fitted level of friction at rest, F_s, is below that in motion, F_c.
     """
 
     law: str
     parameters: int
     held_out_rms: float
     tied: bool
+    rises: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
@@ -82,10 +85,13 @@ class HeldOut:
         Record minus prediction, N, one array per run; NaN at excluded samples.
     white
         Errors whitened with the covariance of the motion errors, if it is known.
+    rises
+        Whether the fitted level of friction at rest, F_s, is below that in motion, F_c.
     """
 
     errors: list[Array]
     white: list[Array]
+    rises: bool = False
 
 
 def allowed(rig: Rig) -> list[str]:
@@ -165,9 +171,29 @@ def which_law(
         limit_s = None if time_limit is None else time_limit.seconds
         raise Unfinished(steps=campaign.work.most, file=campaign.named, time_limit_s=limit_s)
     counts = [len(find_law(name).parameters) for name in held_out]
-    tried = _compared(list(held_out), counts, list(held_out.values()), policy, campaign)
+    tried = [
+        replace(law, rises=held_out[law.law].rises)
+        for law in _compared(list(held_out), counts, list(held_out.values()), policy, campaign)
+    ]
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
     return (first, *(t for t in tried if t is not first)), refused
+
+
+def laws_to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
+    """Names of the laws to diagnose, in this order; a later one must predict better.
+
+    The selected law is the last. An elastic law is preceded by the best law without memory. A law
+    whose level of friction rises with speed is preceded by the simplest one: the rise may be due to
+    a missing effect, such as viscous friction that is less than proportional to speed.
+    """
+    first = laws[0]
+    without = [t for t in laws if initial_memory(t.law, ()) is None]
+    names = [first.law]
+    if find_law(first.law).has_bristle:
+        names = [*(t.law for t in without[:1]), first.law]
+    if any(t.rises for t in without if t.law in names):
+        names.insert(0, SIMPLEST)
+    return tuple(name for name in dict.fromkeys(names) if any(t.law == name for t in laws))
 
 
 def _compared(
@@ -210,7 +236,8 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
         [np.where(c, e, np.nan) for e, c in zip(rows, samples.counted, strict=True)]
         for rows in (every, white)
     )
-    return HeldOut(errors, white)
+    level = problem.values_by_name(solution.values)
+    return HeldOut(errors, white, level.get("F_s", 0.0) < level.get("F_c", 0.0))
 
 
 def _with_starts(samples: Samples, every: Samples) -> Samples:

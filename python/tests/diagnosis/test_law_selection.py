@@ -1,12 +1,13 @@
 """Selection of the base law by held-out error, and simpler laws in place of effects."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from by_hand import Array
 from golden import golden, golden_campaign
-from jbf import Diagnosis, Rig, diagnose
+from jbf import Diagnosis, Drive, Rig, Run, diagnose
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.which_law import LawTried, allowed, compared
 
@@ -111,3 +112,37 @@ def test_simpler_law_is_reported_if_it_replaces_two_effects() -> None:
 def test_no_simpler_law_is_reported_if_it_replaces_one_effect() -> None:
     found = diagnosis_with_offset("coulomb", 0.0)
     assert (found.effects, found.simpler_law) == (("stribeck_excess",), None)
+
+
+def slide_runs(friction_n: Callable[[Array], Array]) -> list[Run]:
+    """Four runs of a slide of 4 kg with two sinusoids of velocity each, and white noise."""
+    noise, time_s = np.random.default_rng(7), np.arange(0.0, 4.0, 0.005)
+    runs = []
+    for phase, (amplitude, rate) in enumerate(((0.1, 2.0), (0.3, 1.0), (0.6, 2.0), (0.5, 4.0))):
+        sines = (np.sin(rate * time_s), 0.4 * np.sin(2.3 * rate * time_s + phase))
+        slopes = (np.cos(rate * time_s), 0.92 * np.cos(2.3 * rate * time_s + phase))
+        velocity = amplitude * np.sum(sines, axis=0)
+        acceleration = amplitude * rate * np.sum(slopes, axis=0)
+        force = friction_n(velocity) + 4.0 * acceleration
+        force += 0.1 * noise.standard_normal(len(time_s))
+        runs.append(Run.from_arrays(time_s, velocity, force, name=f"run {phase}"))
+    return runs
+
+
+def test_viscous_thinning_is_named_although_a_stribeck_curve_that_rises_fits_as_well() -> None:
+    """The curves 30 v / (1 + v/0.4) and A (1 - exp(-(v/v_s)^delta)) + F_v v are similar."""
+    runs = slide_runs(lambda v: 5.0 * np.sign(v) + 30.0 * v / (1.0 + np.abs(v) / 0.4))
+    found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="auto")
+    assert (found.model.law, found.effects) == ("coulomb", ("viscous_thinning",))
+    assert found.fit.parameters["F_v"].value == pytest.approx(30.0, rel=0.01)
+
+
+def test_stribeck_curve_that_rises_is_selected_if_no_effect_predicts_as_well() -> None:
+    """Friction of way lubricants increases from rest to a higher level within a small speed."""
+    runs = slide_runs(
+        lambda v: np.sign(v) * (8.0 - 4.0 * np.exp(-np.abs(v) / 0.05)) + 6.0 * v,
+    )
+    found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="auto")
+    assert (found.verdict, found.model.law) == ("adequate", "stribeck")
+    values = {name: found.fit.parameters[name].value for name in ("F_c", "F_s", "F_v")}
+    assert values == pytest.approx({"F_c": 8.0, "F_s": 4.0, "F_v": 6.0}, rel=0.03)

@@ -116,7 +116,7 @@ def test_no_simpler_law_is_reported_if_it_replaces_one_effect() -> None:
 
 def slide_runs(friction_n: Callable[[Array], Array]) -> list[Run]:
     """Four runs of a slide of 4 kg with two sinusoids of velocity each, and white noise."""
-    noise, time_s = np.random.default_rng(7), np.arange(0.0, 4.0, 0.005)
+    noise, time_s = np.random.default_rng(7), np.arange(0.0, 4.0, 0.01)
     runs = []
     for phase, (amplitude, rate) in enumerate(((0.1, 2.0), (0.3, 1.0), (0.6, 2.0), (0.5, 4.0))):
         sines = (np.sin(rate * time_s), 0.4 * np.sin(2.3 * rate * time_s + phase))

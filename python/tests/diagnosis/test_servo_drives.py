@@ -20,6 +20,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "simulator"))
 
 import servosim
 
+EXTENDED = pytest.mark.extended
+
 
 def recorded(seed: int, hidden: tuple[str, ...] = ()) -> tuple[jbf.Rig, list[jbf.Run]]:
     campaign = servosim.simulate(seed, hidden)
@@ -40,10 +42,12 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
     [
         pytest.param(4014, {"inertia"}, id="point to point, tachometer"),
         pytest.param(4017, {"sensor_offset", "inertia"}, id="hand, late force"),
-        pytest.param(4030, {"inertia"}, id="saturated steps, command"),
+        pytest.param(4030, {"inertia"}, id="saturated steps, command", marks=EXTENDED),
         pytest.param(4032, {"inertia", "gravity"}, id="swinging, position alone"),
-        pytest.param(4612, {"sensor_offset", "inertia"}, id="hand, stamps at arrival"),
-        pytest.param(4816, {"inertia"}, id="point to point, command without noise"),
+        pytest.param(
+            4612, {"sensor_offset", "inertia"}, id="hand, stamps at arrival", marks=EXTENDED
+        ),
+        pytest.param(4816, {"inertia"}, id="point to point, command without noise", marks=EXTENDED),
         pytest.param(4828, {"inertia"}, id="steps, 97 Hz, position alone"),
         pytest.param(4851, {"inertia"}, id="point to point, force late by 0.71 samples"),
         pytest.param(4860, {"inertia", "gravity"}, id="exponential starts, smoothing bias"),
@@ -62,17 +66,17 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         (4049, "cogging"),
         (4045, "viscous_thinning"),
         (4315, "torque_proportional"),
-        (4617, "torque_proportional"),
+        pytest.param(4617, "torque_proportional", marks=EXTENDED),
         # The delay of the force is negligible next to the error of a model without the effect.
-        (4753, "cogging"),
+        pytest.param(4753, "cogging", marks=EXTENDED),
         # Without the effect, its force is taken for errors of the acceleration.
-        (4820, "warm_up"),
+        pytest.param(4820, "warm_up", marks=EXTENDED),
         # Three and a half periods within the travel.
-        pytest.param(4816, "cogging", marks=pytest.mark.extended),
+        pytest.param(4816, "cogging", marks=EXTENDED),
         # The delay of the force appears only when the effect is in the model.
-        pytest.param(4735, "stribeck_excess", marks=pytest.mark.extended),
+        pytest.param(4735, "stribeck_excess", marks=EXTENDED),
         # With an offset, friction that differs by direction in full fits as well.
-        pytest.param(4771, "viscous_asymmetry", marks=pytest.mark.extended),
+        pytest.param(4771, "viscous_asymmetry", marks=EXTENDED),
     ],
 )
 def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:

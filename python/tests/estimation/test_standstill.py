@@ -11,17 +11,17 @@ from point_to_point import BREAKAWAY_N, COULOMB_N, TRUTH, point_to_point
 
 
 @pytest.mark.parametrize(
-    ("effects", "options"),
+    ("law", "effects", "options"),
     [
-        (["inertia"], {}),
-        (["inertia", "sensor_offset"], {"bias_n": 5.0}),
-        (["inertia"], {"integral_1_s": 8.0}),
+        ("coulomb", ["inertia"], {}),
+        ("stribeck", ["inertia"], {}),
+        ("coulomb", ["inertia", "sensor_offset"], {"bias_n": 5.0}),
+        ("coulomb", ["inertia"], {"integral_1_s": 8.0}),
     ],
-    ids=["held", "held against a load", "creeping under an integral controller"],
+    ids=["held", "held, stribeck", "held against a load", "creeping under an integral controller"],
 )
-@pytest.mark.parametrize("law", ["coulomb", "stribeck"])
 def test_sliding_parameters_are_recovered_if_a_controller_holds_between_moves(
-    effects: list[str], options: Any, law: str
+    law: str, effects: list[str], options: Any
 ) -> None:
     found = fit(Rig(), point_to_point([1, 2, 3], **options), effects, law=law)
     for name, true in TRUTH.items():

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +39,11 @@ EVALUATIONS = 20
 """Evaluations of each fit. It limits the effort only."""
 DELAY_STEP = 0.02
 """Tolerance of a delay of the force, in sampling intervals. It is a numerical tolerance."""
+BRACKETS = 4
+"""Number of intervals, each half a sampling interval, in which the root of a slope is searched.
+
+It bounds a search only.
+"""
 DELAY_SPAN = 0.1
 """Half-width of the central difference of the sum of squares with respect to the delay.
 
@@ -130,24 +136,44 @@ def fits_on_clocks(
     return fits
 
 
-def _longest_delay_s(problem: Problem) -> tuple[float, float]:
-    """Largest absolute delay of the force that is tried, and the sampling interval, s."""
-    step_s = min(p.step_s for p in problem.campaign.prepared)
-    return problem.campaign.settings.motion.max_delay_samples * step_s, step_s
-
-
 def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> DelayedFit:
     """Return the likeliest of several delays of the force, half a sampling interval apart.
 
-    The force of an abrupt motion is not linear in a delay. All delays are compared at the same
-    readings.
+    The force of an abrupt motion is not linear in a delay. If the likeliest delay is the longest
+    one of its sign, longer ones of this sign are tried.
     """
-    max_delay_s, step_s = _longest_delay_s(first)
-    margin_s = max_delay_s + step_s
+    settings, step_s = first.campaign.settings.motion, _shortest_step_s(first)
+    longest = settings.max_delay_samples
+    tried_s = step_s * np.arange(-longest + 0.25, longest, 0.5)
+    fits = _fits_at_delays(first, solution, tried_s, at_once)
+    best = min(fits, key=lambda fit: fit.deviance)
+    for _ in range(settings.max_delay_doublings):
+        if abs(best.delay_s) < (longest - 0.5) * step_s:
+            break
+        tried_s = np.sign(best.delay_s) * step_s * np.arange(longest + 0.25, 2.0 * longest, 0.5)
+        longest *= 2.0
+        fits = _fits_at_delays(first, solution, tried_s, at_once)
+        best = min([best, *fits], key=lambda fit: fit.deviance)
+    return best
+
+
+def _fits_at_delays(
+    first: Problem, solution: Solution, tried_s: Array, at_once: int
+) -> list[DelayedFit]:
+    """Fit with each delay of the force, at the same readings."""
+    margin_s = float(np.max(np.abs(tried_s))) + _shortest_step_s(first)
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
-    tried_s = np.arange(-max_delay_s + 0.25 * step_s, max_delay_s, 0.5 * step_s).tolist()
-    fits = in_parallel(lambda s: fit_with_delay(readings, solution, s, rounds=1), tried_s, at_once)
-    return min(fits, key=lambda fit: fit.deviance)
+    fits = in_parallel(
+        lambda delay_s: fit_with_delay(readings, solution, delay_s, rounds=1),
+        tried_s.tolist(),
+        at_once,
+    )
+    return list(fits)
+
+
+def _shortest_step_s(problem: Problem) -> float:
+    """Shortest sampling interval of the runs, s."""
+    return min(p.step_s for p in problem.campaign.prepared)
 
 
 def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
@@ -161,7 +187,7 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     Parameters
     ----------
     start
-        Fit with the delay at which the search begins. The root is at most half a sampling interval
+        Fit with the delay at which the search begins. The root is at most two sampling intervals
         from it.
 
     Returns
@@ -170,7 +196,7 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
         Delay and its standard error, s. The standard error is infinite if the derivative has no
         root near the start.
     """
-    max_delay_s, step_s = _longest_delay_s(start.first)
+    step_s = _shortest_step_s(start.first)
     span_s = DELAY_SPAN * step_s
     references = {start.delay_s: start}
 
@@ -186,11 +212,12 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
         before, after = squares(delay_s, [-1.0, 1.0])
         return float(after - before)
 
-    other_s = start.delay_s + (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
-    other_s = min(max(other_s, -max_delay_s), max_delay_s)
-    if slope(start.delay_s) * slope(other_s) >= 0.0:
+    ahead_s = (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
+    ends_s = [start.delay_s + k * ahead_s for k in range(BRACKETS + 1)]
+    around = next((e for e in pairwise(ends_s) if slope(e[0]) * slope(e[1]) < 0.0), None)
+    if around is None:
         return start.delay_s, np.inf
-    delay_s = float(optimize.brentq(slope, start.delay_s, other_s, xtol=DELAY_STEP * step_s))
+    delay_s = float(optimize.brentq(slope, *around, xtol=DELAY_STEP * step_s))
     before, at, after = squares(delay_s, [-1.0, 0.0, 1.0])
     # The sum of squares rises by one at one standard error.
     curvature = 0.5 * (before + after) - at

@@ -339,8 +339,9 @@ class MotionSettings:
         "1 in 2 million for Gaussian noise",
     )
     max_delay_samples: float = documented(
-        2.0, "sampling intervals up to which such a delay is plausible", "convention"
+        2.0, "sampling intervals up to which such a delay is searched", "convention"
     )
+    max_delay_doublings: int = documented(3, "doublings while its end is likeliest", "convention")
     max_clock_deviance: float = documented(
         9.0,
         "difference of the deviance up to which the clock of the force is not identifiable",

@@ -54,7 +54,7 @@ def test_parameters_of_a_drive_with_a_coarse_encoder_are_within_their_errors() -
     assert np.sqrt(np.mean(errors**2)) < 1.6
 
 
-@pytest.mark.parametrize("delay", [-0.7, 0.4, 1.2])
+@pytest.mark.parametrize("delay", [-0.7, 0.4, 1.2, -5.2, 12.3])
 def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) -> None:
     """Unit: samples."""
     runs = [drive(seed, delay * STEP_S) for seed in (21, 22)]

@@ -24,6 +24,7 @@ from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delays import drift_step
+from jbf.estimation.fit import finish
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.settings import DEFAULT as SETTINGS
@@ -158,6 +159,8 @@ def test_delays_that_differ_between_runs_are_corrected_and_reported() -> None:
     assert there[1].rms == pytest.approx(NOISE_N, rel=0.1)
     assert fitted(problem.campaign)[1].rms > 5.0 * there[1].rms
     assert corrected(*there) is None
+    # Predictions of further runs have the median delay.
+    assert finish(*there).model.force_delay_s == pytest.approx(np.median(DELAYS_S), abs=0.6e-3)
 
 
 def test_clock_drift_common_to_all_runs_is_corrected_and_reported() -> None:

@@ -49,6 +49,7 @@ from jbf.diagnosis.which_law import (
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
+from jbf.estimation.posterior_motions import corrected_for_delay
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock
@@ -189,7 +190,7 @@ def _diagnose(
                 campaign, name, clock, limits, policy, progress, reached, given=law != AUTO
             )
         except Unfinished as stop:
-            if best is None:
+            if best is None and name == names[-1]:
                 raise
             no_law[f"law {name}"] = stop.reason
             continue
@@ -239,8 +240,13 @@ def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[f
 
     It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS.
     """
-    compared = [compare_prepared(answer.model, recorded) for answer in answers]
-    samples = recorded.samples
+    delays_s = [answer.model.force_delay_s for answer in answers]
+    margin_s = max(abs(delay_s) for delay_s in delays_s)
+    compared = [
+        compare_prepared(answer.model, corrected_for_delay(recorded, delay_s, margin_s))
+        for answer, delay_s in zip(answers, delays_s, strict=True)
+    ]
+    samples = compared[0].samples
     for comparison in compared:
         samples = samples.within(comparison.samples.counted)
     lasts = [answer.steps[-1] for answer in answers]

@@ -34,7 +34,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 SIMPLEST = "coulomb"
-"""The law with the fewest parameters."""
+"""The simplest law of dry friction."""
 ON_REQUEST = frozenset({"rate_and_state"})
 """Laws that are not part of the automatic selection.
 
@@ -55,15 +55,15 @@ class LawTried:
         Held-out RMS on the samples common to all laws, N.
     tied
         Whether the error is not significantly larger than that of the best law.
-    rises
-        Whether the fitted level of friction at rest, F_s, is below that in motion, F_c.
+    static_below_kinetic
+        Whether the fitted static friction F_s is below the kinetic friction F_c.
     """
 
     law: str
     parameters: int
     held_out_rms: float
     tied: bool
-    rises: bool = False
+    static_below_kinetic: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
@@ -85,13 +85,13 @@ class HeldOut:
         Record minus prediction, N, one array per run; NaN at excluded samples.
     white
         Errors whitened with the covariance of the motion errors, if it is known.
-    rises
-        Whether the fitted level of friction at rest, F_s, is below that in motion, F_c.
+    static_below_kinetic
+        Whether the fitted static friction F_s is below the kinetic friction F_c.
     """
 
     errors: list[Array]
     white: list[Array]
-    rises: bool = False
+    static_below_kinetic: bool = False
 
 
 def allowed(rig: Rig) -> list[str]:
@@ -172,7 +172,7 @@ def which_law(
         raise Unfinished(steps=campaign.work.most, file=campaign.named, time_limit_s=limit_s)
     counts = [len(find_law(name).parameters) for name in held_out]
     tried = [
-        replace(law, rises=held_out[law.law].rises)
+        replace(law, static_below_kinetic=held_out[law.law].static_below_kinetic)
         for law in _compared(list(held_out), counts, list(held_out.values()), policy, campaign)
     ]
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
@@ -180,20 +180,22 @@ def which_law(
 
 
 def laws_to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
-    """Names of the laws to diagnose, in this order; a later one must predict better.
+    """Names of the laws to diagnose, the selected one last.
 
-    The selected law is the last. An elastic law is preceded by the best law without memory. A law
-    whose level of friction rises with speed is preceded by the simplest one: the rise may be due to
-    a missing effect, such as viscous friction that is less than proportional to speed.
+    An elastic law is preceded by the best law without memory. If the static friction of the law
+    without memory is below its kinetic friction, the simplest law precedes it: a missing effect may
+    be the cause, such as viscous friction that is less than proportional to speed. A later law
+    replaces an earlier one only if it predicts better by a margin (`diagnose`).
     """
-    first = laws[0]
-    without = [t for t in laws if initial_memory(t.law, ()) is None]
-    names = [first.law]
-    if find_law(first.law).has_bristle:
-        names = [*(t.law for t in without[:1]), first.law]
-    if any(t.rises for t in without if t.law in names):
+    selected = laws[0]
+    memoryless = [t for t in laws if initial_memory(t.law, ()) is None]
+    names = [selected.law]
+    if find_law(selected.law).has_bristle:
+        names = [*(t.law for t in memoryless[:1]), selected.law]
+    if any(t.static_below_kinetic for t in memoryless if t.law in names):
         names.insert(0, SIMPLEST)
-    return tuple(name for name in dict.fromkeys(names) if any(t.law == name for t in laws))
+    evaluated = {t.law for t in laws}
+    return tuple(name for name in dict.fromkeys(names) if name in evaluated)
 
 
 def _compared(
@@ -236,8 +238,9 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
         [np.where(c, e, np.nan) for e, c in zip(rows, samples.counted, strict=True)]
         for rows in (every, white)
     )
-    level = problem.values_by_name(solution.values)
-    return HeldOut(errors, white, level.get("F_s", 0.0) < level.get("F_c", 0.0))
+    values = problem.values_by_name(solution.values)
+    static_below_kinetic = values.get("F_s", np.inf) < values.get("F_c", 0.0)
+    return HeldOut(errors, white, static_below_kinetic)
 
 
 def _with_starts(samples: Samples, every: Samples) -> Samples:

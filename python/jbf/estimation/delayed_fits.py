@@ -39,8 +39,8 @@ EVALUATIONS = 20
 """Evaluations of each fit. It limits the effort only."""
 DELAY_STEP = 0.02
 """Tolerance of a delay of the force, in sampling intervals. It is a numerical tolerance."""
-BRACKETS = 4
-"""Number of intervals, each half a sampling interval, in which the root of a slope is searched.
+MAX_BRACKETS = 4
+"""Number of intervals, each half a sampling interval, in which a sign change is sought.
 
 It bounds a search only.
 """
@@ -140,49 +140,49 @@ def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> Delaye
     """Return the likeliest of several delays of the force, half a sampling interval apart.
 
     The force of an abrupt motion is not linear in a delay. If the likeliest delay is the longest
-    one of its sign, longer ones of this sign are tried.
+    one of its sign, the range is doubled for this sign, up to a share of the shortest run.
     """
-    settings, step_s = first.campaign.settings.motion, _shortest_step_s(first)
-    longest = settings.max_delay_samples
-    tried_s = step_s * np.arange(-longest + 0.25, longest, 0.5)
-    fits = _fits_at_delays(first, solution, tried_s, at_once)
-    best = min(fits, key=lambda fit: fit.deviance)
-    for _ in range(settings.max_delay_doublings):
-        if abs(best.delay_s) < (longest - 0.5) * step_s:
+    settings, step_s = first.campaign.settings, _shortest_step_s(first)
+    shortest_run_s = min(p.run.duration_s for p in first.campaign.prepared)
+    range_s = settings.motion.delay_range_samples * step_s
+    tried_s = np.arange(0.25 * step_s - range_s, range_s, 0.5 * step_s)
+    best = _likeliest_of(first, solution, tried_s, at_once)
+    for _ in range(settings.motion.max_delay_doublings):
+        is_longest = abs(best.delay_s) > range_s - 0.5 * step_s
+        if not is_longest or 2.0 * range_s > settings.delays.max_run_share * shortest_run_s:
             break
-        tried_s = np.sign(best.delay_s) * step_s * np.arange(longest + 0.25, 2.0 * longest, 0.5)
-        longest *= 2.0
-        fits = _fits_at_delays(first, solution, tried_s, at_once)
-        best = min([best, *fits], key=lambda fit: fit.deviance)
+        longer_s = np.arange(range_s + 0.25 * step_s, 2.0 * range_s, 0.5 * step_s)
+        tried_s = np.array([best.delay_s, *np.copysign(longer_s, best.delay_s)])
+        range_s *= 2.0
+        best = _likeliest_of(first, best.solution, tried_s, at_once)
     return best
 
 
-def _fits_at_delays(
-    first: Problem, solution: Solution, tried_s: Array, at_once: int
-) -> list[DelayedFit]:
-    """Fit with each delay of the force, at the same readings."""
-    margin_s = float(np.max(np.abs(tried_s))) + _shortest_step_s(first)
+def _likeliest_of(first: Problem, solution: Solution, tried_s: Array, at_once: int) -> DelayedFit:
+    """Return the likeliest of the delays `tried_s`, compared at the same readings."""
+    beyond_s = (0.5 * MAX_BRACKETS + 1.0) * _shortest_step_s(first)
+    margin_s = float(np.max(np.abs(tried_s))) + beyond_s
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
     fits = in_parallel(
         lambda delay_s: fit_with_delay(readings, solution, delay_s, rounds=1),
         tried_s.tolist(),
         at_once,
     )
-    return list(fits)
+    return min(fits, key=lambda fit: fit.deviance)
 
 
 def _shortest_step_s(problem: Problem) -> float:
-    """Shortest sampling interval of the runs, s."""
+    """Shortest sampling interval of all runs, s."""
     return min(p.step_s for p in problem.campaign.prepared)
 
 
 def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     """Solve for the delay that is its own generalised least-squares estimate.
 
-    The estimate has the covariance of a fit with this delay. It is the root of the derivative of
-    the whitened sum of squares at fixed covariance. The maximum of the likelihood is less accurate:
-    the covariance, and with it the likelihood, is discontinuous where a sample crosses a corner of
-    the motion.
+    The covariance of the residual depends on the delay. The whitened sum of squares, with the
+    covariance of this delay held fixed, is stationary at the result. The maximum of the likelihood
+    is less accurate: the covariance, and with it the likelihood, is discontinuous where a sample
+    crosses a corner of the motion.
 
     Parameters
     ----------
@@ -212,12 +212,14 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
         before, after = squares(delay_s, [-1.0, 1.0])
         return float(after - before)
 
-    ahead_s = (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
-    ends_s = [start.delay_s + k * ahead_s for k in range(BRACKETS + 1)]
-    around = next((e for e in pairwise(ends_s) if slope(e[0]) * slope(e[1]) < 0.0), None)
-    if around is None:
+    downhill_s = (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
+    ends_s = [start.delay_s + k * downhill_s for k in range(MAX_BRACKETS + 1)]
+    bracket = next(
+        (ends for ends in pairwise(ends_s) if slope(ends[0]) * slope(ends[1]) <= 0.0), None
+    )
+    if bracket is None:
         return start.delay_s, np.inf
-    delay_s = float(optimize.brentq(slope, *around, xtol=DELAY_STEP * step_s))
+    delay_s = float(optimize.brentq(slope, *bracket, xtol=DELAY_STEP * step_s))
     before, at, after = squares(delay_s, [-1.0, 0.0, 1.0])
     # The sum of squares rises by one at one standard error.
     curvature = 0.5 * (before + after) - at

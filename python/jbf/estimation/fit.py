@@ -21,7 +21,7 @@ from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.noise_floor import noise_floor
-from jbf.estimation.posterior_motions import typical_delay_s
+from jbf.estimation.posterior_motions import delay_of_further_runs_s
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.robust_fit import best_weighting
 from jbf.estimation.solution import Solution
@@ -215,7 +215,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     }
     if campaign.travel is not None:
         facts["travel"] = campaign.travel
-    delay_s = typical_delay_s(campaign)
+    delay_s = delay_of_further_runs_s(campaign)
     if delay_s != 0.0:
         facts["force_delay_s"] = delay_s
     if "gravity" in problem.effects:

@@ -112,16 +112,18 @@ def corrected_delay_s(campaign: Campaign) -> float:
     return sum(f.size for f in _corrected(campaign))
 
 
-def typical_delay_s(campaign: Campaign) -> float:
+def delay_of_further_runs_s(campaign: Campaign) -> float:
     """Return the corrected delay of the force that a further run is expected to have, s.
 
     It is the delay common to all runs plus the median of the delays that were corrected run by run.
     """
-    names = [p.run.name for p in campaign.prepared]
-    own = dict.fromkeys(names, 0.0)
-    if len(names) > 1:
-        own |= {f.run: f.size for f in campaign.more_findings if f.kind == LATE and f.run in own}
-    return corrected_delay_s(campaign) + float(np.median(list(own.values())))
+    runs = [p.run.name for p in campaign.prepared]
+    if len(runs) == 1:
+        # The delay of a single run is the common one.
+        return corrected_delay_s(campaign)
+    own_s = {f.run: f.size for f in campaign.more_findings if f.kind == LATE}
+    median_s = float(np.median([own_s.get(run, 0.0) for run in runs]))
+    return corrected_delay_s(campaign) + median_s
 
 
 def shifted(first: Problem, delay_s: float) -> Problem:

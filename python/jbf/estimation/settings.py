@@ -338,10 +338,10 @@ class MotionSettings:
         "minimum delay of the force in all runs, in standard errors, for it to be corrected",
         "1 in 2 million for Gaussian noise",
     )
-    max_delay_samples: float = documented(
-        2.0, "sampling intervals up to which such a delay is searched", "convention"
+    delay_range_samples: float = documented(
+        2.0, "range of the search for this delay, in the shortest sampling interval", "convention"
     )
-    max_delay_doublings: int = documented(3, "doublings while its end is likeliest", "convention")
+    max_delay_doublings: int = documented(3, "largest number of its doublings", "convention")
     max_clock_deviance: float = documented(
         9.0,
         "difference of the deviance up to which the clock of the force is not identifiable",

@@ -179,11 +179,11 @@ class Model(Shown):
 
     @property
     def force_delay_s(self) -> float:
-        """Delay of the recorded force that the fit corrected, s; zero if none.
+        """Delay of the recorded force in a further run, s; zero if the fit found none.
 
-        It is negative for an early force, and the median where the delays of the runs differ. It is
-        a property of the logger: `predict` and :func:`jbf.compare` apply it to every run, exports
-        do not. See `delay` for the effect `time_delay`.
+        It is the delay common to the fitted runs plus the median of their own delays, negative for
+        an early force. It is a property of the logger: `predict` and :func:`jbf.compare` apply it
+        to every run, exports do not. See `delay` for the effect `time_delay`.
         """
         return float(self.fit.get("force_delay_s", 0.0))
 

@@ -99,7 +99,7 @@ NUMERICAL = {
     "range of a search, wider than any plausible result": """
         diagnosis.power.detection_limits: EXPONENTS
         estimation.delay_scan: REACH LEAST_REACH_STEPS
-        estimation.delayed_fits: BRACKETS
+        estimation.delayed_fits: MAX_BRACKETS
         estimation.generalised_least_squares: LEAST_INTENSITY
         estimation.motion_error_scale: LEAST_NOISE MOST_NOISE MOST_SCALE RATIOS
         estimation.quantisation: MOST_NOISE

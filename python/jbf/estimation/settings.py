@@ -339,9 +339,9 @@ class MotionSettings:
         "1 in 2 million for Gaussian noise",
     )
     delay_range_samples: float = documented(
-        2.0, "range of the search for this delay, in the shortest sampling interval", "convention"
+        2.0, "range of the search for this delay, in shortest sampling intervals", "convention"
     )
-    max_delay_doublings: int = documented(3, "largest number of its doublings", "convention")
+    max_delay_doublings: int = documented(3, "doublings of delay_range_samples", "convention")
     max_clock_deviance: float = documented(
         9.0,
         "difference of the deviance up to which the clock of the force is not identifiable",

@@ -6,10 +6,11 @@ of the motion. The errors of the motion are estimated with each delay.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import pairwise
+from operator import attrgetter, methodcaller
 
 import numpy as np
 import numpy.typing as npt
@@ -119,21 +120,36 @@ def fits_on_clocks(
     ]
     if not tested:
         return fits
-    likeliest = _likeliest_delay(first, fits[0].solution, at_once)
-    delay_s, sd_s = _fixed_point_delay(likeliest)
+    start = _likeliest_delay(first, fits[0].solution, at_once)
+    delay_s, sd_s = _fixed_point_delay(start)
     tested = [k for k in tested if abs(delay_s - clocks_s[k]) >= settings.min_delay_sigma * sd_s]
     if not tested:
         return fits
-    readings, near = likeliest.first, likeliest.solution
+    readings, near = start.first, start.solution
     delayed = fit_with_delay(readings, near, delay_s)
     end = fit_with_delay(first, delayed.solution, delay_s, delayed=True)
     for k in tested:
         without = fit_with_delay(readings, near, clocks_s[k])
         used = (fit.solution.samples.weight for fit in (without, delayed))
         weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
-        if delayed.deviance_at(weights) <= without.deviance_at(weights):
+        deviance = methodcaller("deviance_at", weights)
+        if likeliest((delayed, without), deviance) is delayed:
             fits[k] = end
     return fits
+
+
+def likeliest(
+    fits: Iterable[DelayedFit], deviance: Callable[[DelayedFit], float] = attrgetter("deviance")
+) -> DelayedFit:
+    """Return the fit with the smallest deviance among those whose RMS is not much larger.
+
+    With a wrong delay or motion, the scale of the motion's errors may increase so far that they
+    explain the residual better than a smaller noise does.
+    """
+    fits = list(fits)
+    smallest = min(fit.solution.rms for fit in fits)
+    most = fits[0].first.campaign.settings.motion.max_rms_ratio * smallest
+    return min((fit for fit in fits if fit.solution.rms <= most), key=deviance)
 
 
 def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> DelayedFit:
@@ -168,7 +184,7 @@ def _likeliest_of(first: Problem, solution: Solution, tried_s: Array, at_once: i
         tried_s.tolist(),
         at_once,
     )
-    return min(fits, key=lambda fit: fit.deviance)
+    return likeliest(fits)
 
 
 def _shortest_step_s(problem: Problem) -> float:

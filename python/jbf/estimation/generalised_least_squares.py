@@ -18,10 +18,12 @@ from jbf.estimation.delayed_fits import (
     fit_with_delay,
     fit_with_errors,
     fits_on_clocks,
+    likeliest,
     near_solution,
 )
 from jbf.estimation.motion_error_scale import estimate_motion_errors, penalised_deviance
 from jbf.estimation.noise import WHITE
+from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
     corrected_delay_s,
     posteriors,
@@ -61,8 +63,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
     ends = fits_on_clocks(problem, solution, clocks)
-    best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
-    best = _with_corners_located_by_forces(problem, best)
+    best = _with_corners_located_by_forces(problem, likeliest(ends))
     motion = best.solution.samples.motion
     if motion is None:
         return problem, solution
@@ -123,6 +124,10 @@ def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Pr
 def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedFit:
     """Locate corners (abrupt changes of acceleration) of the motion by the forces, and refit.
 
+    The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
+    the friction divided by the mass. The force of a hand may jump instead. The motions with and
+    without these jumps are both fitted, and the likelier fit is used.
+
     Parameters
     ----------
     first
@@ -132,10 +137,16 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     least = first.campaign.settings.motion.min_share
     if motion is None or motion.variance_share(end.solution.samples.weight) < least:
         return end
-    located = with_corners_located_by_forces(end.problem, end.solution, motion)
-    again = with_posteriors(first, posteriors(located))
-    near = near_solution(again, end.solution)
-    return fit_with_delay(again, near, end.delay_s, delayed=end.delayed)
+
+    def fitted(jumps: bool) -> DelayedFit:
+        """Fit with the corners located, with or without jumps at the reversals."""
+        located = with_corners_located_by_forces(end.problem, end.solution, motion, jumps=jumps)
+        again = with_posteriors(first, posteriors(located))
+        near = near_solution(again, end.solution)
+        return fit_with_delay(again, near, end.delay_s, delayed=end.delayed)
+
+    at_once = fits_at_once(first.campaign, first.law, first.effects)
+    return likeliest(in_parallel(fitted, (False, True), at_once))
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

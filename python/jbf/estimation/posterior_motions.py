@@ -15,6 +15,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
+from jbf.records.motion.acceleration_jumps import NO_JUMPS, Jumps
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.motion.readings import ForceReadings
 from jbf.records.motion.smoothing import Smoothed
@@ -66,11 +67,12 @@ def with_scaled_intensity(
 
 
 def with_corners_located_by_forces(
-    problem: Problem, solution: Solution, errors: ErrorsInMotion
+    problem: Problem, solution: Solution, errors: ErrorsInMotion, *, jumps: bool = False
 ) -> Problem:
     """Return the problem with abrupt changes of the acceleration (corners) located by the forces.
 
-    See `Smoothed.with_corners_located_by`.
+    See `Smoothed.with_corners_located_by`. With `jumps`, the acceleration jumps at each reversal by
+    the change of the friction divided by the mass.
     """
     if not problem.campaign.force_has_clock:
         return problem
@@ -87,13 +89,58 @@ def with_corners_located_by_forces(
         if smoothed is None:
             motions.append(None)
             continue
-        mean, _, _ = smoothed.at(p.run.time_s)
+        mean, covariance, _ = smoothed.at(p.run.time_s)
         with np.errstate(divide="ignore"):
             variances = np.where(weight > 0.0, (errors.noise / weight) ** 2, np.inf)
         values = np.einsum("ni,ni->n", rows, mean[:, :3]) + residual
         forces = ForceReadings(p.run.time_s, rows, values, variances)
-        motions.append(smoothed.with_corners_located_by(forces))
+        speed_sd = np.sqrt(np.maximum(covariance[:, 1, 1], 0.0))
+        at_reversals = _jumps_at_reversals(p, mean, speed_sd, residual, rows) if jumps else NO_JUMPS
+        motions.append(smoothed.with_corners_located_by(forces, at_reversals))
     return with_posteriors(problem, motions)
+
+
+def _jumps_at_reversals(
+    p: Prepared, mean: Array, speed_sd: Array, residual: Array, rows: Array
+) -> Jumps:
+    """Jumps of the acceleration of a run at its reversals, for a continuous force of the drive.
+
+    The change of the friction in the step with a reversal is that of the predicted force, less the
+    part that is linear in the motion.
+
+    Parameters
+    ----------
+    mean
+        Position and its derivatives at the samples, shape (n, N).
+    speed_sd
+        Standard error of the speed, shape (n,).
+    residual
+        Force minus predicted force, N, shape (n,).
+    rows
+        Derivatives of the predicted force with respect to position, velocity and acceleration,
+        shape (n, 3).
+    """
+    sliding = np.flatnonzero(p.slides)
+    v, time_s = p.motion.velocity[sliding], p.run.time_s[sliding]
+    rested = np.diff(np.cumsum(p.motion.resting)[sliding]) > 0
+    slopes = 0.5 * (rows[sliding][1:] + rows[sliding][:-1])
+    turns = np.flatnonzero(((v[1:] * v[:-1] < 0.0) | rested) & (slopes[:, 2] > 0.0))
+    forces, states = (p.friction - residual)[sliding], mean[sliding, :3]
+    change = np.diff(forces) - np.sum(slopes * np.diff(states, axis=0), axis=1)
+    mass = slopes[turns, 2]
+    sizes = -change[turns] / mass
+    before = states[turns, 2] + residual[sliding][turns] / mass
+    # If the drive sticks, the acceleration is zero after the reversal.
+    sticks = rested[turns] | (np.abs(sizes) > np.abs(before))
+    gap_s = np.diff(time_s)[turns]
+    slope = np.where(sticks, before, np.diff(v)[turns] / gap_s)
+    with np.errstate(divide="ignore"):
+        since_s = np.clip(-v[turns] / slope, 0.0, gap_s)
+        sd_s = np.minimum(speed_sd[sliding][turns] / np.abs(slope), gap_s)
+    sizes = np.where(sticks, -before, sizes)
+    # With too small a mass, the sizes are meaningless.
+    kept = np.abs(sizes) < np.ptp(states[:, 2])
+    return Jumps((time_s[turns] + since_s)[kept], sizes[kept], sd_s[kept])
 
 
 def _corrected(campaign: Campaign) -> list[Finding]:

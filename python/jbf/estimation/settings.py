@@ -304,9 +304,7 @@ class MotionSettings:
     """Settings for errors of the estimated motion in the likelihood."""
 
     coast_down_spacing: float = documented(
-        2.0,
-        "spacing of the used samples of a coast-down, in correlation lengths of the errors",
-        "independent errors",
+        2.0, "spacing of used samples of a coast-down, in correlation lengths", "independent errors"
     )
     min_share: float = documented(
         0.01,
@@ -329,9 +327,12 @@ class MotionSettings:
         "the standard errors of the smoother are right within a factor of three",
     )
     huber_sigma: float = documented(
-        2.5,
-        "standard errors, from noise and motion, beyond which a residual is downweighted",
-        "Huber (1964)",
+        2.5, "standard errors beyond which a residual is downweighted", "Huber (1964)"
+    )
+    max_rms_ratio: float = documented(
+        1.25,
+        "ratio to the smallest RMS of fits with other delays or motions above which none is used",
+        "a fit with larger errors of the motion may be likelier although it is worse",
     )
     min_delay_sigma: float = documented(
         5.0,
@@ -367,9 +368,7 @@ class PeriodSettings:
         100, "minimum number of samples for a run to be tested for a period", "convention"
     )
     min_correlation: float = documented(
-        0.9,
-        "minimum autocorrelation of the speed at a period",
-        "convention: the motion is repeated",
+        0.9, "minimum autocorrelation of the speed at a period", "convention"
     )
     max_difference: float = documented(
         0.02,

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jbf.records.motion.acceleration_jumps import Jumps
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.reading_errors import is_even
 from jbf.records.motion.readings import ForceReadings, ReadingErrors, Readings
@@ -228,3 +229,57 @@ def test_forces_place_a_corner_in_the_step_in_which_the_acceleration_jumps() -> 
         for m in (smoothed, located)
     ]
     assert worst[1] < 3.0 < worst[0]
+
+
+def reversing(time: Array, turn_s: float) -> Array:
+    """Position, velocity and acceleration of a motion that turns, shape (n, 3).
+
+    The acceleration jumps from -6 to -2 at the reversal.
+    """
+    since = time - turn_s
+    acceleration = np.where(since < 0.0, -6.0, -2.0)
+    return np.column_stack((0.5 * acceleration * since**2, acceleration * since, acceleration))
+
+
+@pytest.mark.parametrize("turn_s", [1.5001, 1.5022, 1.5049])
+def test_known_jump_of_the_acceleration_is_not_smoothed(turn_s: float) -> None:
+    """The jump is within a step of a coarse encoder, close to either sample or between them."""
+    time = STEP_S * np.arange(600)
+    position, velocity, acceleration = reversing(time, turn_s).T
+    smoothed = smooth(readings_of(position, velocity).positions())
+    jumps = Jumps(np.array([turn_s]), np.array([4.0]), np.array([1e-5]))
+    followed = smoothed.with_corners_located_by(None, jumps)
+    near = np.abs(time - turn_s) < 10.0 * STEP_S
+    errors = [np.abs(m.mean[near, 2] - acceleration[near]) for m in (smoothed, followed)]
+    assert np.max(errors[1]) < 0.25 < 1.0 < np.max(errors[0])
+    assert np.all(errors[1] < 4.0 * np.sqrt(followed.covariance[near, 2, 2]))
+    # The states at other instants contain the jump as well.
+    between = time[near] + 0.4 * STEP_S
+    mean, _, _ = followed.at(between)
+    true = reversing(between, turn_s)
+    assert mean[:, 2] == pytest.approx(true[:, 2], abs=0.25)
+    assert mean[:, :2] == pytest.approx(true[:, :2], abs=0.01)
+
+
+def test_motion_of_jumps_is_the_double_integral_of_their_acceleration() -> None:
+    jumps = Jumps(np.array([0.2, 0.35, 0.8]), np.array([3.0, -5.0, 2.0]), np.zeros(3))
+    fine = 1e-5 * np.arange(100_001)
+    acceleration = (fine[:, None] > jumps.instants_s) @ jumps.sizes
+    velocity = 1e-5 * np.cumsum(acceleration)
+    expected = np.column_stack((1e-5 * np.cumsum(velocity), velocity, acceleration))
+    chosen = slice(5_000, None, 9_000)
+    assert jumps.at(fine[chosen]) == pytest.approx(expected[chosen], abs=1e-4)
+
+
+def test_sample_close_to_an_uncertain_jump_has_a_large_error_of_the_acceleration() -> None:
+    """The instant is wrong by 0.4 ms, two of its standard errors, and a sample is between."""
+    time = STEP_S * np.arange(600)
+    turn_s = time[375] + 2e-4
+    position, velocity, acceleration = reversing(time, turn_s).T
+    smoothed = smooth(readings_of(position, velocity).positions())
+    instants, size = np.array([time[375] - 2e-4]), np.array([4.0])
+    followed = smoothed.with_corners_located_by(None, Jumps(instants, size, np.array([2e-4])))
+    sd = np.sqrt(followed.covariance[:, 2, 2])
+    off = np.abs(followed.mean[:, 2] - acceleration)
+    assert np.all(off[365:386] < 3.0 * sd[365:386])
+    assert off[375] > 1.0

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.motion.acceleration_jumps import NO_JUMPS, Jumps
 from jbf.records.motion.reading_errors import JERK, LONG_PASSES, estimate_errors, starting_errors
 from jbf.records.motion.readings import AT_REST, ForceReadings, ReadingErrors, Readings
 
@@ -32,6 +33,8 @@ class Smoothed:
         corners, where the motion changes abruptly.
     own_corners
         Factors as in `corners`, but estimated without the forces, from the readings of the motion.
+    jumps
+        Known jumps of the acceleration, included in `mean`.
     speed
         Speed at each sample, for the effect of the errors of the time stamps, shape (n,).
     mean, covariance
@@ -49,6 +52,7 @@ class Smoothed:
     covariance: Array
     gain: Array
     own_corners: Array
+    jumps: Jumps = NO_JUMPS
 
     @classmethod
     def of(
@@ -58,12 +62,14 @@ class Smoothed:
         corners: Array,
         speed: Array,
         own_corners: Array | None = None,
+        jumps: Jumps = NO_JUMPS,
     ) -> Smoothed:
         """Compute the posterior of a motion for given reading errors."""
-        posterior = readings.smoothed(errors, corners, speed)
+        posterior = jumps.removed_from(readings, errors).smoothed(errors, corners, speed)
+        mean = jumps.added_to(posterior.mean, readings.time_s)
         of_motion = corners if own_corners is None else own_corners
-        states = posterior.mean, posterior.covariance, posterior.gain
-        return cls(readings, errors, corners, speed, *states, of_motion)
+        states = mean, posterior.covariance, posterior.gain
+        return cls(readings, errors, corners, speed, *states, of_motion, jumps)
 
     def with_scaled_intensity(self, factor: float, *, same_corners: bool = False) -> Smoothed:
         """Posterior of the same readings for the noise intensity times a factor.
@@ -71,16 +77,19 @@ class Smoothed:
         Parameters
         ----------
         same_corners
-            True to keep the factors of the corners instead of estimating them again.
+            True to keep the corners and the jumps. Otherwise the corners are estimated again,
+            without jumps.
         """
         if self.errors.intensity <= 0.0:
             return self
         errors = replace(self.errors, intensity=factor * self.errors.intensity)
         if same_corners:
-            return Smoothed.of(self.readings, errors, self.corners, self.speed)
+            return Smoothed.of(self.readings, errors, self.corners, self.speed, jumps=self.jumps)
         return _smoothed(self.readings, errors, self.readings.corners(errors, LONG_PASSES))
 
-    def with_corners_located_by(self, forces: ForceReadings | None) -> Smoothed:
+    def with_corners_located_by(
+        self, forces: ForceReadings | None, jumps: Jumps = NO_JUMPS
+    ) -> Smoothed:
         """Posterior of the same readings with corners where the forces require them.
 
         The forces determine the accelerations more exactly than the readings of the motion do. The
@@ -92,14 +101,23 @@ class Smoothed:
         ----------
         forces
             Forces as linear functions of the motion; None for the corners without them.
+        jumps
+            Jumps of the acceleration, which need no corners.
         """
         if self.errors.intensity <= 0.0:
             return self
         corners = self.own_corners
+        readings = jumps.removed_from(self.readings, self.errors)
+        if len(jumps.instants_s):
+            corners = _located_to_a_step(readings.corners(self.errors, LONG_PASSES))
         if forces is not None:
-            by_forces = self.readings.corners(self.errors, LONG_PASSES, forces)
+            by_forces = readings.corners(
+                self.errors, LONG_PASSES, jumps.removed_from_forces(forces)
+            )
             corners = np.maximum(corners, _located_to_a_step(by_forces))
-        return Smoothed.of(self.readings, self.errors, corners, self.speed, self.own_corners)
+        corners = np.maximum(corners, jumps.corners(self.readings.time_s, self.errors.intensity))
+        of_motion = self.own_corners
+        return Smoothed.of(self.readings, self.errors, corners, self.speed, of_motion, jumps)
 
     def at(self, instants_s: Array) -> tuple[Array, Array, Array]:
         """Mean, covariance and gain at other instants, s, not decreasing and within the motion."""
@@ -109,9 +127,10 @@ class Smoothed:
         speed[samples] = self.speed
         last = np.searchsorted(time, readings.time_s[:-1], "right") - 1
         step = np.clip(last, 0, len(time) - 2)
-        posterior = readings.smoothed(self.errors, self.corners[step], speed)
-        mean, covariance = posterior.mean[added], posterior.covariance[added]
-        return mean, covariance, _composed(posterior.gain, added)
+        relative = self.jumps.removed_from(readings, self.errors)
+        posterior = relative.smoothed(self.errors, self.corners[step], speed)
+        mean = self.jumps.added_to(posterior.mean, readings.time_s)
+        return mean[added], posterior.covariance[added], _composed(posterior.gain, added)
 
 
 def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:

@@ -126,7 +126,8 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
 
     The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
     the friction divided by the mass. The force of a hand may jump instead. The motions with and
-    without these jumps are both fitted, and the likelier fit is used.
+    without these jumps are both fitted, and the likeliest fit is used (`likeliest`), which may be
+    `end` itself.
 
     Parameters
     ----------
@@ -146,7 +147,7 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
         return fit_with_delay(again, near, end.delay_s, delayed=end.delayed)
 
     at_once = fits_at_once(first.campaign, first.law, first.effects)
-    return likeliest(in_parallel(fitted, (False, True), at_once))
+    return likeliest([end, *in_parallel(fitted, (False, True), at_once)])
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf import Model, Rig, Run, compare, fit
+from jbf import Drive, Model, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.motion_error_scale import estimate_motion_errors
@@ -193,3 +193,36 @@ def test_estimated_noise_and_scale_of_motion_errors_have_the_largest_likelihood(
     assert found.scale == pytest.approx(scale, rel=0.05)
     if noise > NOISE:
         assert found.noise == pytest.approx(noise, rel=0.05)
+
+
+def presliding_run(seed: int, deflection: float, count: float) -> Run:
+    """A drive with Dahl's friction (1968), driven by a smooth torque, integrated in fine steps."""
+    random, fine_s = np.random.default_rng(seed), 5e-5
+    time = fine_s * np.arange(int(6.0 / fine_s))
+    phases = np.outer(time, random.uniform(0.5, 1.5, 3)) + random.uniform(0.0, 1.0, 3)
+    torque = np.sum(np.sin(2.0 * np.pi * phases), axis=1)
+    position, velocity, bristle = 0.0, 0.0, 0.0
+    positions = np.zeros(len(time))
+    for k, drive_torque in enumerate(torque.tolist()):
+        friction = COULOMB * bristle / deflection + VISCOUS * velocity
+        velocity += fine_s * (drive_torque - friction) / INERTIA
+        position += fine_s * velocity
+        bristle += fine_s * (velocity - abs(velocity) * bristle / deflection)
+        positions[k] = position
+    read = np.arange(200, len(time), 40)
+    counted = np.round(positions[read] / count) * count
+    force = torque[read] + random.normal(0.0, 0.01, len(read))
+    return Run.from_arrays(time[read], None, force, position_m=counted, name=f"dahl_{seed}")
+
+
+@pytest.mark.parametrize(("deflection", "count"), [(5e-3, 1e-4), (5e-3, 1.5e-3)])
+def test_presliding_is_not_taken_for_errors_of_the_motion(deflection: float, count: float) -> None:
+    """Corners of the motion can imitate presliding, with residuals many times as large."""
+    runs = [presliding_run(seed, deflection, count) for seed in (1, 2)]
+    rig = Rig(drive=Drive("linear", "force"))
+    sliding = fit(rig, runs, ["inertia"], law="coulomb")
+    found = fit(rig, runs, ["inertia", "presliding"], law="coulomb")
+    assert found.rms < 0.5 * sliding.rms < 0.1
+    assert found.parameters["presliding.sigma"].value == pytest.approx(
+        COULOMB / deflection, rel=0.05
+    )

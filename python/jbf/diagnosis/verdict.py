@@ -62,8 +62,8 @@ def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -
     Parameters
     ----------
     gain
-        Gain of the effect in addition to the others, in twice the log likelihood of independent
-        samples.
+        Decrease of the sum of squares by the effect in addition to the others, relative to the
+        variance of the noise, for independent samples.
     disagreement
         Gain of run-specific parameters of the effect in excess of chance, in the same unit; None if
         the runs agree.
@@ -84,7 +84,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
     """
     full, problem = candidates.converge(present), candidates.fitted(present).problem
     share, policy = candidates.independent_share(full), candidates.policy
-    largest = max((r.share for r in remains), default=0.0)
+    largest, count = max((r.share for r in remains), default=0.0), full.samples.count
     doubted = []
     machine = machine_of(candidates.campaign.rig, present)
     for name in present:
@@ -92,11 +92,13 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
             continue
         rest = candidates.converge(tuple(e for e in present if e != name))
         gain = likelihood_gain(full, rest) * share
+        # The disagreement is in units of the noise of the model, also for a large effect.
+        in_noise = share * count * math.expm1(min(gain / (share * count), 100.0))
         test = disagreement(problem, full, name, policy)
         beyond = test.gain - test.degrees if test.beyond_chance(policy) else None
         explained = 1.0 - (full.rms / rest.rms) ** 2
         weak = gain - price_of(candidates, full.free - rest.free) <= policy.selection.weak_evidence
-        if (weak and explained < largest) or not name_is_supported(gain, beyond, policy):
+        if (weak and explained < largest) or not name_is_supported(in_noise, beyond, policy):
             doubted.append(name)
     return tuple(doubted)
 

@@ -137,3 +137,24 @@ def test_tone_is_reported_below_the_nyquist_frequency_with_a_bounded_amplitude()
     ((frequency_hz, amplitude),) = pairs_in(tone)
     assert frequency_hz < 0.5 / STEP_S
     assert amplitude < 3.0 * np.max(np.abs(signal))
+
+
+@pytest.mark.parametrize(
+    ("factor", "reported"), [(0.6, False), (0.8, True), (1.3, True), (2.0, False)]
+)
+def test_tone_that_changes_with_less_smoothing_is_not_reported(
+    factor: float, reported: bool
+) -> None:
+    """The amplitude must be the same within a factor of 1.5; other noise does not matter."""
+    campaign = campaign_of(1500)
+    noise, other = white_noise(campaign, 1)[0], white_noise(campaign, 2)[0]
+    tone = sine(1500, 6.3)
+    found = find_tones(
+        campaign.prepared,
+        campaign.samples,
+        [noise + tone],
+        [noise + tone],
+        DEFAULT,
+        lambda: [other + factor * tone],
+    )
+    assert bool(found) == reported

@@ -121,6 +121,16 @@ def test_effect_whose_parameter_differs_between_runs_is_a_confounder() -> None:
     assert confounders(candidates, (OFFSET, DRIFT)) == (DRIFT,)
 
 
+def test_large_effect_is_named_although_its_parameter_differs_by_five_per_cent_between_runs() -> (
+    None
+):
+    """The drift explains more than 99 % of the mean square."""
+    candidates = _candidates(lambda i, t: (0.3 + 0.015 * (-1.0) ** i) * t)
+    explained = (candidates.converge((DRIFT,)).rms / candidates.converge(()).rms) ** 2
+    assert explained < 0.01
+    assert confounders(candidates, (DRIFT,)) == ()
+
+
 def test_weak_effect_is_a_confounder_if_the_unexplained_structure_exceeds_its_gain() -> None:
     """The gain of an offset of 0.03 N is below the threshold plus 60."""
     candidates = _candidates(lambda i, t: 0.012)

@@ -12,7 +12,8 @@ relevant. Sizes in newtons refer to the residual: record minus model.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -39,14 +40,25 @@ def find_residual_structure(
 ) -> tuple[Remainder, ...]:
     """Test the residual of a solution for all kinds of structure, and return those found.
 
-    The largest share of the mean square is first.
+    The largest share of the mean square is first. Smoothing biases an estimated motion where the
+    acceleration changes fast. The model is therefore refitted with a motion that is smoothed less,
+    and a pattern or a tone that changes by more than `policy.motion.max_pattern_ratio` is not
+    returned.
     """
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
     residuals = samples.without_deviations(solution.residuals, solution.noise)
-    patterns = find_patterns(problem, solution, innovations, residuals, policy)
+
+    @cache
+    def less_smoothed() -> list[Array]:
+        """Residuals of the model refitted with a motion that is smoothed less."""
+        other = with_less_smoothing(problem, solution)[1]
+        return other.samples.without_deviations(other.residuals, other.noise)
+
+    rough = None if samples.motion is None else less_smoothed
+    patterns = find_patterns(problem, solution, innovations, residuals, policy, rough)
     structure = [Remainder(f.axis, f.where, f.share) for f in patterns]
-    structure += find_tones(prepared, samples, innovations, residuals, policy)
+    structure += find_tones(prepared, samples, innovations, residuals, policy, rough)
     structure += find_ripples(problem.campaign, samples, innovations, residuals, policy)
     structure += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
@@ -68,13 +80,16 @@ def find_patterns(
     innovations: Sequence[Array],
     residuals: Sequence[Array],
     policy: Policy,
+    less_smoothed: Callable[[], Sequence[Array]] | None = None,
 ) -> list[Failure]:
     """Find axes along which the means of the innovations differ significantly and relevantly.
 
-    Each pattern that is returned contains the means of the residuals (N) along its axis. Smoothing
-    biases an estimated motion where the acceleration changes fast. The model is therefore refitted
-    with a motion that is smoothed less, and a pattern that changes by more than
-    `policy.motion.max_pattern_ratio` is not returned.
+    Each pattern that is returned contains the means of the residuals (N) along its axis.
+
+    Parameters
+    ----------
+    less_smoothed
+        Returns the residuals with a motion that is smoothed less.
     """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
@@ -90,11 +105,9 @@ def find_patterns(
         pattern = pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
         if pattern is not None:
             found.append((axis, pattern))
-    if not found or solution.samples.motion is None:
+    if not found or less_smoothed is None:
         return [pattern for _, pattern in found]
-    other = with_less_smoothing(problem, solution)[1]
-    rough = other.samples.without_deviations(other.residuals, other.noise)
-    most = policy.motion.max_pattern_ratio
+    rough, most = less_smoothed(), policy.motion.max_pattern_ratio
     ratios = [
         _pattern_ratio(axis, solution.samples, innovations, residuals, rough) for axis, _ in found
     ]

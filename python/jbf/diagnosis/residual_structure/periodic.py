@@ -13,7 +13,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -49,10 +49,11 @@ def _cosine_and_sine(phase: Array) -> Array:
     return np.stack([np.cos(phase), np.sin(phase)], axis=1)
 
 
-def _fitted_wave(waves: Array, residual: Array) -> tuple[float, float]:
-    """Amplitude and explained sum of squares of a cosine and a sine fitted to residuals."""
+def _fitted_wave(waves: Array, residual: Array) -> tuple[float, Array]:
+    """Amplitude and values of a cosine and a sine fitted to residuals."""
     coefficients, *_ = np.linalg.lstsq(waves, residual, rcond=None)
-    return float(np.hypot(*coefficients)), float(np.sum((waves @ coefficients) ** 2))
+    wave: Array = waves @ coefficients
+    return float(np.hypot(*coefficients)), wave
 
 
 # ---- tones ------------------------------------------------------------------------------------
@@ -64,11 +65,22 @@ def find_tones(
     innovations: Sequence[Array],
     residuals: Sequence[Array],
     policy: Policy,
+    less_smoothed: Callable[[], Sequence[Array]] | None = None,
 ) -> list[Remainder]:
-    """Test for spectral lines in the innovations; their amplitudes are those in the residuals."""
+    """Test for spectral lines in the innovations; their amplitudes are those in the residuals.
+
+    Parameters
+    ----------
+    less_smoothed
+        Returns the residuals with a motion that is smoothed less. A line that changes with it is an
+        error of the smoothing.
+    """
+    most = policy.motion.max_pattern_ratio
     lines: list[tuple[float, float, str]] = []
     power = 0.0
-    for p, counted, e, r in zip(prepared, samples.counted, innovations, residuals, strict=True):
+    for i, (p, counted, e, r) in enumerate(
+        zip(prepared, samples.counted, innovations, residuals, strict=True)
+    ):
         n = len(e)
         if n < policy.tones.min_samples:
             continue
@@ -81,7 +93,11 @@ def find_tones(
         k = int(np.argmax(np.where(band, spectrum, 0.0)))
         if level <= 0.0 or spectrum[k] / level < -np.log(policy.tones.chance / band.sum()):
             continue
-        frequency, amplitude = _refine(p.run.time_s, r, counted, float(f[k]), float(f[1]))
+        frequency, amplitude, wave = _refine(p.run.time_s, r, counted, float(f[k]), float(f[1]))
+        if less_smoothed is not None:
+            ratio = float(wave @ less_smoothed()[i][counted]) / max(float(wave @ wave), 1e-300)
+            if not 1.0 / most < ratio < most:
+                continue
         lines.append((frequency, amplitude, p.run.name))
         power += 0.5 * amplitude**2 * n
     share = power / _sum_of_squares(residuals, samples)
@@ -102,8 +118,10 @@ def _describe_tones(lines: list[tuple[float, float, str]], runs: int, unit: str)
     return "tones: " + ", ".join(f"{x[0]:.2f} Hz of {x[1]:.2g} {unit} in {x[2]}" for x in lines)
 
 
-def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> tuple[float, float]:
-    """Frequency and amplitude of the best-fitting sine near a spectral line.
+def _refine(
+    time: Array, r: Array, counted: Mask, near: float, width: float
+) -> tuple[float, float, Array]:
+    """Frequency, amplitude and values of the best-fitting sine near a spectral line.
 
     The distance of the frequency from zero and from the Nyquist frequency is at least half a line
     width. At a smaller distance, a sine cannot be distinguished from a constant or from its alias.
@@ -111,12 +129,12 @@ def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> 
     nyquist = 0.5 / float(np.median(np.diff(time)))
     grid = near + width * np.linspace(-1.0, 1.0, 41)
     grid = np.clip(grid, 0.5 * width, nyquist - 0.5 * width)
-    best, amplitude, largest = near, 0.0, -1.0
-    for f in grid:
-        size, square = _fitted_wave(_cosine_and_sine(2.0 * np.pi * f * time[counted]), r[counted])
-        if square > largest:
-            best, amplitude, largest = float(f), size, square
-    return best, amplitude
+    fits = [
+        _fitted_wave(_cosine_and_sine(2.0 * np.pi * f * time[counted]), r[counted]) for f in grid
+    ]
+    best = int(np.argmax([float(wave @ wave) for _, wave in fits]))
+    amplitude, wave = fits[best]
+    return float(grid[best]), amplitude, wave
 
 
 # ---- ripples over the travel ------------------------------------------------------------------
@@ -243,10 +261,11 @@ def _ripple_size(
         waves.append(_cosine_and_sine(2.0 * np.pi * travel[counted] / pitch))
         centred.append(r[counted] - np.mean(r[counted]) if counted.any() else r[counted])
     by_run = [_fitted_wave(w, r) for w, r in zip(waves, centred, strict=True)]
-    square = sum(part for _, part in by_run)
+    square = sum(float(wave @ wave) for _, wave in by_run)
     _, common = _fitted_wave(np.concatenate(waves), np.concatenate(centred))
     amplitude = float(np.median([size for size, _ in by_run]))
-    return square / _sum_of_squares(residuals, samples), amplitude, common / max(square, 1e-300)
+    common_share = float(common @ common) / max(square, 1e-300)
+    return square / _sum_of_squares(residuals, samples), amplitude, common_share
 
 
 def _describe_ripple(campaign: Campaign, pitch: float, amplitude: float, along: bool) -> str:

@@ -92,13 +92,13 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
             continue
         rest = candidates.converge(tuple(e for e in present if e != name))
         gain = likelihood_gain(full, rest) * share
-        # The disagreement is in units of the noise of the model, also for a large effect.
-        in_noise = share * count * math.expm1(min(gain / (share * count), 100.0))
+        # Convert n log(S0 / S1) to (S0 - S1) / sigma^2, the unit of the disagreement.
+        decrease = share * count * math.expm1(min(gain / (share * count), 100.0))
         test = disagreement(problem, full, name, policy)
         beyond = test.gain - test.degrees if test.beyond_chance(policy) else None
         explained = 1.0 - (full.rms / rest.rms) ** 2
         weak = gain - price_of(candidates, full.free - rest.free) <= policy.selection.weak_evidence
-        if (weak and explained < largest) or not name_is_supported(in_noise, beyond, policy):
+        if (weak and explained < largest) or not name_is_supported(decrease, beyond, policy):
             doubted.append(name)
     return tuple(doubted)
 

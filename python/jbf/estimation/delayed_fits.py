@@ -100,7 +100,7 @@ def fits_on_clocks(
 ) -> list[DelayedFit]:
     """Fit with the force on each clock, or with a significant delay common to all runs instead.
 
-    The delay is used if it is significant, and likelier at the samples of both fits.
+    The delay is used if it is significant, and likelier (`likeliest`) at the samples of both.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def fits_on_clocks(
 def likeliest(
     fits: Iterable[DelayedFit], deviance: Callable[[DelayedFit], float] = attrgetter("deviance")
 ) -> DelayedFit:
-    """Return the fit with the smallest deviance among those whose RMS is not much larger.
+    """Return the likeliest of the fits with an RMS of at most `max_rms_ratio` times the smallest.
 
     With a wrong delay or motion, the scale of the motion's errors may increase so far that they
     explain the residual better than a smaller noise does.

@@ -73,14 +73,14 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     large = share > settings.conditions.max_motion_share
     if not large and best.solution.rms > settings.noise.max_rms_ratio * plain_fit.rms:
         return plain, plain_fit
-    # Changes with less smoothing, with the other clock and without the corners located by forces
-    # are systematic errors, the latter two if the likelihood is similar.
+    # Changes with less smoothing, with the other clock and before the corners were located are
+    # systematic errors, the latter two if the likelihood is similar.
     others = [with_less_smoothing(best.problem, best.solution)[1]]
     unclear = settings.motion.max_clock_deviance
     others += [
         other.solution
         for other in dict.fromkeys(ends)
-        if other is not best and other.deviance - best.deviance < unclear
+        if other is not best and abs(other.deviance - best.deviance) < unclear
     ]
     values = best.problem.encode(best.solution.values)
     changes = [best.problem.encode(other.values) - values for other in others]
@@ -89,10 +89,10 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Return the problem with a with_scaled_intensity motion, and its solution.
+    """Return the problem with a motion that is smoothed less, and its solution.
 
-    The intensity of the process noise is multiplied by `roughness_factor`; weights, corners and the
-    projection of a delay are kept. The change of a result measures its smoothing bias.
+    The intensity of the process noise is multiplied by `roughness_factor`; weights, corners, jumps
+    and the projection of a delay are kept. The change of a result measures its smoothing bias.
     """
     factor = problem.campaign.settings.motion.roughness_factor
     problem = with_scaled_intensity(problem, factor, same_corners=True)
@@ -126,8 +126,8 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
 
     The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
     the friction divided by the mass. The force of a hand may jump instead. The motions with and
-    without these jumps are both fitted, and the likeliest fit is used (`likeliest`), which may be
-    `end` itself.
+    without these jumps are both fitted. The likeliest of these fits and `end` is returned
+    (`likeliest`).
 
     Parameters
     ----------
@@ -139,9 +139,11 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     if motion is None or motion.variance_share(end.solution.samples.weight) < least:
         return end
 
-    def fitted(jumps: bool) -> DelayedFit:
-        """Fit with the corners located, with or without jumps at the reversals."""
-        located = with_corners_located_by_forces(end.problem, end.solution, motion, jumps=jumps)
+    def fitted(with_jumps: bool) -> DelayedFit:
+        """Fit with the corners located, with or without jumps of the acceleration."""
+        located = with_corners_located_by_forces(
+            end.problem, end.solution, motion, with_jumps=with_jumps
+        )
         again = with_posteriors(first, posteriors(located))
         near = near_solution(again, end.solution)
         return fit_with_delay(again, near, end.delay_s, delayed=end.delayed)

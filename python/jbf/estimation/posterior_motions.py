@@ -67,12 +67,12 @@ def with_scaled_intensity(
 
 
 def with_corners_located_by_forces(
-    problem: Problem, solution: Solution, errors: ErrorsInMotion, *, jumps: bool = False
+    problem: Problem, solution: Solution, errors: ErrorsInMotion, *, with_jumps: bool = False
 ) -> Problem:
     """Return the problem with abrupt changes of the acceleration (corners) located by the forces.
 
-    See `Smoothed.with_corners_located_by`. With `jumps`, the acceleration jumps at each reversal by
-    the change of the friction divided by the mass.
+    See `Smoothed.with_corners_located_by`. With `with_jumps`, the acceleration jumps at
+    reversals and stops.
     """
     if not problem.campaign.force_has_clock:
         return problem
@@ -95,7 +95,9 @@ def with_corners_located_by_forces(
         values = np.einsum("ni,ni->n", rows, mean[:, :3]) + residual
         forces = ForceReadings(p.run.time_s, rows, values, variances)
         speed_sd = np.sqrt(np.maximum(covariance[:, 1, 1], 0.0))
-        at_reversals = _jumps_at_reversals(p, mean, speed_sd, residual, rows) if jumps else NO_JUMPS
+        at_reversals = (
+            _jumps_at_reversals(p, mean, speed_sd, residual, rows) if with_jumps else NO_JUMPS
+        )
         motions.append(smoothed.with_corners_located_by(forces, at_reversals))
     return with_posteriors(problem, motions)
 
@@ -103,10 +105,11 @@ def with_corners_located_by_forces(
 def _jumps_at_reversals(
     p: Prepared, mean: Array, speed_sd: Array, residual: Array, rows: Array
 ) -> Jumps:
-    """Jumps of the acceleration of a run at its reversals, for a continuous force of the drive.
+    """Jumps of the acceleration of a run at reversals and stops, for a continuous drive force.
 
-    The change of the friction in the step with a reversal is that of the predicted force, less the
-    part that is linear in the motion.
+    The jump at a reversal is the change of the friction divided by the mass. The change of the
+    friction is the difference of the predicted forces minus sensitivity times change of the motion.
+    At a stop, or if the drive sticks at a reversal, the acceleration jumps to zero.
 
     Parameters
     ----------
@@ -122,25 +125,25 @@ def _jumps_at_reversals(
     """
     sliding = np.flatnonzero(p.slides)
     v, time_s = p.motion.velocity[sliding], p.run.time_s[sliding]
-    rested = np.diff(np.cumsum(p.motion.resting)[sliding]) > 0
-    slopes = 0.5 * (rows[sliding][1:] + rows[sliding][:-1])
-    turns = np.flatnonzero(((v[1:] * v[:-1] < 0.0) | rested) & (slopes[:, 2] > 0.0))
+    rest_between = np.diff(np.cumsum(p.motion.resting)[sliding]) > 0
+    sensitivity = 0.5 * (rows[sliding][1:] + rows[sliding][:-1])
+    reverses = (v[1:] * v[:-1] < 0.0) | rest_between
+    events = np.flatnonzero(reverses & (sensitivity[:, 2] > 0.0))
+    mass = sensitivity[events, 2]
     forces, states = (p.friction - residual)[sliding], mean[sliding, :3]
-    change = np.diff(forces) - np.sum(slopes * np.diff(states, axis=0), axis=1)
-    mass = slopes[turns, 2]
-    sizes = -change[turns] / mass
-    before = states[turns, 2] + residual[sliding][turns] / mass
-    # If the drive sticks, the acceleration is zero after the reversal.
-    sticks = rested[turns] | (np.abs(sizes) > np.abs(before))
-    gap_s = np.diff(time_s)[turns]
-    slope = np.where(sticks, before, np.diff(v)[turns] / gap_s)
+    of_friction = np.diff(forces) - np.sum(sensitivity * np.diff(states, axis=0), axis=1)
+    at_reversal = -of_friction[events] / mass
+    before = states[events, 2] + residual[sliding][events] / mass
+    sticks = rest_between[events] | (at_reversal * before < -(before**2))
+    sizes = np.where(sticks, -before, at_reversal)
+    step_s = np.diff(time_s)[events]
+    deceleration = np.where(sticks, before, np.diff(v)[events] / step_s)
     with np.errstate(divide="ignore"):
-        since_s = np.clip(-v[turns] / slope, 0.0, gap_s)
-        sd_s = np.minimum(speed_sd[sliding][turns] / np.abs(slope), gap_s)
-    sizes = np.where(sticks, -before, sizes)
-    # With too small a mass, the sizes are meaningless.
+        to_zero_s = np.clip(-v[events] / deceleration, 0.0, step_s)
+        sd_s = np.minimum(speed_sd[sliding][events] / np.abs(deceleration), step_s)
+    # A jump beyond the range of the accelerations is due to too small an estimate of the mass.
     kept = np.abs(sizes) < np.ptp(states[:, 2])
-    return Jumps((time_s[turns] + since_s)[kept], sizes[kept], sd_s[kept])
+    return Jumps((time_s[events] + to_zero_s)[kept], sizes[kept], sd_s[kept])
 
 
 def _corrected(campaign: Campaign) -> list[Finding]:

@@ -331,8 +331,8 @@ class MotionSettings:
     )
     max_rms_ratio: float = documented(
         1.25,
-        "ratio to the smallest RMS of fits with other delays or motions above which none is used",
-        "a fit with larger errors of the motion may be likelier although it is worse",
+        "maximum RMS of a fit, relative to the smallest RMS of the fits compared with it",
+        "large estimated errors of the motion can make a worse fit likelier",
     )
     min_delay_sigma: float = documented(
         5.0,

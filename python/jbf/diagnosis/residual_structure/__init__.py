@@ -50,15 +50,15 @@ def find_residual_structure(
     residuals = samples.without_deviations(solution.residuals, solution.noise)
 
     @cache
-    def less_smoothed() -> list[Array]:
+    def refitted() -> list[Array]:
         """Residuals of the model refitted with a motion that is smoothed less."""
         other = with_less_smoothing(problem, solution)[1]
         return other.samples.without_deviations(other.residuals, other.noise)
 
-    rough = None if samples.motion is None else less_smoothed
-    patterns = find_patterns(problem, solution, innovations, residuals, policy, rough)
+    less_smoothed = None if samples.motion is None else refitted
+    patterns = find_patterns(problem, solution, innovations, residuals, policy, less_smoothed)
     structure = [Remainder(f.axis, f.where, f.share) for f in patterns]
-    structure += find_tones(prepared, samples, innovations, residuals, policy, rough)
+    structure += find_tones(prepared, samples, innovations, residuals, policy, less_smoothed)
     structure += find_ripples(problem.campaign, samples, innovations, residuals, policy)
     structure += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
@@ -107,9 +107,9 @@ def find_patterns(
             found.append((axis, pattern))
     if not found or less_smoothed is None:
         return [pattern for _, pattern in found]
-    rough, most = less_smoothed(), policy.motion.max_pattern_ratio
+    other, most = less_smoothed(), policy.motion.max_pattern_ratio
     ratios = [
-        _pattern_ratio(axis, solution.samples, innovations, residuals, rough) for axis, _ in found
+        _pattern_ratio(axis, solution.samples, innovations, residuals, other) for axis, _ in found
     ]
     return [
         pattern

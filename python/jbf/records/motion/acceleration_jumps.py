@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.motion.reading_errors import JERK
 from jbf.records.motion.readings import ForceReadings, ReadingErrors, Readings
 
 Array = npt.NDArray[np.float64]
@@ -19,7 +20,8 @@ JUMP_SIGMA = 2.0
 class Jumps:
     """Jumps of the acceleration of a motion, of known sizes at known instants.
 
-    The posterior of a motion with such jumps is that of the remaining motion plus theirs.
+    The posterior of a motion with such jumps is that of the remaining motion plus the motion that
+    the jumps cause.
 
     Attributes
     ----------
@@ -36,7 +38,7 @@ class Jumps:
     instant_errors_s: Array
 
     def at(self, time_s: Array) -> Array:
-        """Position, velocity and acceleration due to the jumps, after rest, shape (n, 3)."""
+        """Motion that the jumps alone cause from rest: position and derivatives, shape (n, 3)."""
         start = np.searchsorted(self.instants_s, time_s, "right")
         # Position, velocity and acceleration after each jump, after rest before the first one.
         step_s = np.diff(self.instants_s, prepend=self.instants_s[:1])
@@ -48,7 +50,7 @@ class Jumps:
         x, v, a = (np.concatenate(([0.0], state))[start] for state in (x, v, after))
         return np.column_stack((x + v * since_s + 0.5 * a * since_s**2, v + a * since_s, a))
 
-    def removed_from(self, readings: Readings, errors: ReadingErrors) -> Readings:
+    def subtracted_from(self, readings: Readings, errors: ReadingErrors) -> Readings:
         """Readings of the remaining motion."""
         if not len(self.instants_s):
             return readings
@@ -57,12 +59,12 @@ class Jumps:
         velocity = readings.velocity - self.at(read_s)[:, 1]
         return replace(readings, position=position, velocity=velocity)
 
-    def removed_from_forces(self, forces: ForceReadings) -> ForceReadings:
+    def subtracted_from_forces(self, forces: ForceReadings) -> ForceReadings:
         """Forces without the part due to the jumps."""
         part = np.sum(forces.rows * self.at(forces.instants_s), axis=1)
         return replace(forces, values=forces.values - part)
 
-    def corners(self, time_s: Array, intensity: float) -> Array:
+    def corners(self, time_s: Array, errors: ReadingErrors) -> Array:
         """Factors of the noise intensity in each step, shape (n - 1,), for uncertain instants.
 
         If a sample is within two standard errors of a jump, the acceleration may jump by its size
@@ -82,7 +84,10 @@ class Jumps:
             if j > i:
                 steps = slice(i, j + 1)
                 step_s = np.maximum(np.diff(time_s[i : j + 2]), 1e-300)
-                factors[steps] = np.maximum(factors[steps], size**2 / (intensity * step_s))
+                # Variance of the acceleration after a step with process noise of unit factor.
+                order = 2 * (errors.order - JERK) + 1
+                variance = errors.intensity * step_s**order / order
+                factors[steps] = np.maximum(factors[steps], size**2 / variance)
         return factors
 
     def added_to(self, mean: Array, time_s: Array) -> Array:

@@ -65,7 +65,7 @@ class Smoothed:
         jumps: Jumps = NO_JUMPS,
     ) -> Smoothed:
         """Compute the posterior of a motion for given reading errors."""
-        posterior = jumps.removed_from(readings, errors).smoothed(errors, corners, speed)
+        posterior = jumps.subtracted_from(readings, errors).smoothed(errors, corners, speed)
         mean = jumps.added_to(posterior.mean, readings.time_s)
         of_motion = corners if own_corners is None else own_corners
         states = mean, posterior.covariance, posterior.gain
@@ -84,7 +84,8 @@ class Smoothed:
             return self
         errors = replace(self.errors, intensity=factor * self.errors.intensity)
         if same_corners:
-            return Smoothed.of(self.readings, errors, self.corners, self.speed, jumps=self.jumps)
+            kept = self.corners, self.speed, self.own_corners, self.jumps
+            return Smoothed.of(self.readings, errors, *kept)
         return _smoothed(self.readings, errors, self.readings.corners(errors, LONG_PASSES))
 
     def with_corners_located_by(
@@ -94,28 +95,29 @@ class Smoothed:
 
         The forces determine the accelerations more exactly than the readings of the motion do. The
         factor of the noise intensity in each step is the maximum of the factors with and without
-        the forces. The forces are not readings of the posterior itself, so that its errors remain
-        independent of theirs.
+        the forces, and of those of jumps at uncertain instants. The forces are not readings of the
+        posterior itself. Without jumps, its errors therefore remain independent of theirs.
 
         Parameters
         ----------
         forces
             Forces as linear functions of the motion; None for the corners without them.
         jumps
-            Jumps of the acceleration, which need no corners.
+            Jumps of the acceleration, which are subtracted before smoothing. Corners are added only
+            where their instants are uncertain.
         """
         if self.errors.intensity <= 0.0:
             return self
         corners = self.own_corners
-        readings = jumps.removed_from(self.readings, self.errors)
+        readings = jumps.subtracted_from(self.readings, self.errors)
         if len(jumps.instants_s):
             corners = _located_to_a_step(readings.corners(self.errors, LONG_PASSES))
         if forces is not None:
             by_forces = readings.corners(
-                self.errors, LONG_PASSES, jumps.removed_from_forces(forces)
+                self.errors, LONG_PASSES, jumps.subtracted_from_forces(forces)
             )
             corners = np.maximum(corners, _located_to_a_step(by_forces))
-        corners = np.maximum(corners, jumps.corners(self.readings.time_s, self.errors.intensity))
+        corners = np.maximum(corners, jumps.corners(self.readings.time_s, self.errors))
         of_motion = self.own_corners
         return Smoothed.of(self.readings, self.errors, corners, self.speed, of_motion, jumps)
 
@@ -127,7 +129,7 @@ class Smoothed:
         speed[samples] = self.speed
         last = np.searchsorted(time, readings.time_s[:-1], "right") - 1
         step = np.clip(last, 0, len(time) - 2)
-        relative = self.jumps.removed_from(readings, self.errors)
+        relative = self.jumps.subtracted_from(readings, self.errors)
         posterior = relative.smoothed(self.errors, self.corners[step], speed)
         mean = self.jumps.added_to(posterior.mean, readings.time_s)
         return mean[added], posterior.covariance[added], _composed(posterior.gain, added)

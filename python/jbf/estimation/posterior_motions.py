@@ -142,7 +142,7 @@ def _jumps_at_reversals(
         to_zero_s = np.clip(-v[events] / deceleration, 0.0, step_s)
         sd_s = np.minimum(speed_sd[sliding][events] / np.abs(deceleration), step_s)
     # A jump beyond the range of the accelerations is due to too small an estimate of the mass.
-    kept = np.abs(sizes) < np.ptp(states[:, 2])
+    kept = np.abs(sizes) < np.ptp(mean[:, 2])
     return Jumps((time_s[events] + to_zero_s)[kept], sizes[kept], sd_s[kept])
 
 

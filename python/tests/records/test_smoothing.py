@@ -283,3 +283,16 @@ def test_sample_close_to_an_uncertain_jump_has_a_large_error_of_the_acceleration
     off = np.abs(followed.mean[:, 2] - acceleration)
     assert np.all(off[365:386] < 3.0 * sd[365:386])
     assert off[375] > 1.0
+
+
+@pytest.mark.parametrize(("order", "variance"), [(3, 5.0 * 0.02), (4, 5.0 * 0.02**3 / 3.0)])
+def test_process_noise_at_an_uncertain_jump_has_the_variance_of_its_size(
+    order: int, variance: float
+) -> None:
+    """Variance of the acceleration after a step of 20 ms, with jerk or snap of intensity 5."""
+    errors = ReadingErrors(1e-8, 1e-4, 0.0, 5.0, order)
+    jumps = Jumps(np.array([0.1001, 0.35]), np.array([4.0, 4.0]), np.array([1e-3, 1e-3]))
+    factors = jumps.corners(0.02 * np.arange(30), errors)
+    # The first jump may be on either side of the sample at 0.1 s, the second is within a step.
+    assert np.flatnonzero(factors).tolist() == [4, 5]
+    assert factors[4:6] * variance == pytest.approx(16.0)

@@ -85,8 +85,8 @@ class Jumps:
                 steps = slice(i, j + 1)
                 step_s = np.maximum(np.diff(time_s[i : j + 2]), 1e-300)
                 # Variance of the acceleration after a step with process noise of unit factor.
-                order = 2 * (errors.order - JERK) + 1
-                variance = errors.intensity * step_s**order / order
+                power = 2 * (errors.order - JERK) + 1
+                variance = errors.intensity * step_s**power / power
                 factors[steps] = np.maximum(factors[steps], size**2 / variance)
         return factors
 

@@ -11,7 +11,6 @@ from jbf.diagnosis.fit_state import Reached
 from jbf.diagnosis.which_law import followed
 from jbf.errors import Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.least_squares import MOST_SEARCHED
 from jbf.estimation.problem import Problem
 from jbf.estimation.work import TimeLimit
 from jbf.models.vocabulary import AUTO, Clock
@@ -77,7 +76,7 @@ def sufficient_time_s(reached: Reached, law: str, clock: Clock, limit: TimeLimit
     """
     steps = _steps(reached.campaign, law, clock)
     if steps is None:
-        samples = min(sum(map(len, reached.runs)), MOST_SEARCHED)
+        samples = sum(map(len, reached.runs))
         steps = EVALUATIONS * USUAL_CANDIDATES * USUAL_STEPS * samples
     return _rounded_up(max(steps / STEPS_A_SECOND, 2.0 * limit.seconds, 1.0))
 

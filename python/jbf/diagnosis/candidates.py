@@ -31,7 +31,7 @@ from jbf.estimation.held_out_comparison import ExtrapolatedRun, extrapolated_run
 from jbf.estimation.initial_state import has_unknown_start
 from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.likelihood import effective_share, likelihood_gain
-from jbf.estimation.minimum import Approach, approach, search_peaks, settle
+from jbf.estimation.minimum import Approach, approach, many_peaks, search_peaks, settle
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -47,11 +47,6 @@ RANKING_EVALUATIONS = 6
 
 Only competitive candidates are fitted further. It limits the computing time only.
 """
-
-
-def many_peaks(effects: Iterable[str]) -> bool:
-    """Whether the likelihood of a model with any of these effects has many local maxima."""
-    return any(find_effect(name).peaks for name in effects)
 
 
 class Candidates:
@@ -166,7 +161,8 @@ class Candidates:
             if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
-                starts = fitted.problem.starts({**self._values_of(near), **nulls})
+                known = self.fitted(near.effects).problem.values_by_name(near.values) | nulls
+                starts = fitted.problem.starts(known)
                 fitted.score, fitted.directions, fitted.stepped = score_test(
                     fitted.problem, starts, near, added
                 )
@@ -218,13 +214,22 @@ class Candidates:
     # ---- fits -------------------------------------------------------------------------------
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Fit a model with these effects approximately, for ranking, from a smaller one."""
+        """Fit a model with these effects approximately, from the solution `near` of another."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
+            near = near or self._most_similar(effects)
             way = fitted.approach or self._approach(fitted, effects, near)
             fitted.improve(way.follow(RANKING_EVALUATIONS, fitted.max_square))
             fitted.state, fitted.approach, fitted.promised = "ranked", None, np.inf
         return fitted.current_solution()
+
+    def _most_similar(self, effects: Sequence[str]) -> Solution | None:
+        """Solution of the fitted model with the fewest other effects; None before the first fit."""
+        wanted = frozenset(effects)
+        fits = [(k, f) for k, f in self._fitted.items() if f.state in ("ranked", "converged")]
+        # Of equally similar models, the one with more effects has a value for each parameter.
+        fits.sort(key=lambda fit: (len(wanted ^ fit[0]), -len(fit[0]), sorted(fit[0])))
+        return fits[0][1].current_solution() if fits else None
 
     def look(self, effects: Sequence[str], near: Solution) -> Fitted:
         """Fit a model with these effects by a few steps, from the solution of a smaller model."""
@@ -240,29 +245,27 @@ class Candidates:
         """Create the unfinished search for the fit of these effects, with its starting values."""
         seeds: list[Mapping[str, float]] = [{}]
         many = near is not None and many_peaks(near.effects)
-        if near is not None:
-            near_values = self._values_of(near)
-            # Law parameters that compensated for the missing effect are poor starting values; with
-            # many peaks, those of the other effects are poor as well.
-            kept = {} if many else {n: v for n, v in near_values.items() if "." in n}
-            seeds = [near_values, kept]
         earlier_values = None if self.earlier is None else self.earlier.values_of(effects)
         if earlier_values is not None:
             # Start from the solution before the sample weights changed.
             seeds = [earlier_values]
-        fitted.max_square = self._required_square(near)
+        elif near is not None:
+            near_values = self.fitted(near.effects).problem.values_by_name(near.values)
+            # Law parameters that compensated for the missing effect are poor starting values; with
+            # many peaks, those of the other effects are poor as well.
+            kept = {} if many else {n: v for n, v in near_values.items() if "." in n}
+            seeds, fitted.started_from = [near_values, kept], frozenset(near.effects)
+        if near is not None and set(near.effects) < set(effects):
+            fitted.max_square = self._required_square(near)
         return Approach(fitted.problem, seeds, each=many, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         """Rank several sets of effects (`rank`), each from the solution of a smaller model."""
-        # Start the largest problems first.
-        order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
-        self._each("trying", lambda effects: self.rank(effects, near), order, near)
+        self._each("trying", lambda effects: self.rank(effects, near), sets, near)
 
     def look_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         """Fit several sets of effects by a few steps (`look`) from a smaller model's solution."""
-        order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
-        self._each("looking at", lambda effects: self.look(effects, near), order, near)
+        self._each("looking at", lambda effects: self.look(effects, near), sets, near)
 
     def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> list[float]:
         """Return the gain of each set of effects by its score test (`score_test`)."""
@@ -277,8 +280,10 @@ class Candidates:
         near: Solution,
     ) -> None:
         """Apply a function to each set of effects in parallel threads and report progress."""
-        done = in_parallel(work, sets, fits_at_once(self.campaign, self.law, self.names))
-        for i, effects in enumerate(sets):
+        # Start the largest problems first.
+        order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
+        done = in_parallel(work, order, fits_at_once(self.campaign, self.law, self.names))
+        for i, effects in enumerate(order):
             added = ", ".join(name for name in effects if name not in near.effects)
             self.tell(f"{doing} {added}", i, len(sets))
             next(done)
@@ -316,8 +321,10 @@ class Candidates:
         The fit of the smaller model may have converged to a local minimum that the richer one
         avoided.
         """
-        near, fitted = self.converge(effects), self.fitted(effects)
         self.converge(richer)
+        near, fitted = self.converge(effects), self.fitted(effects)
+        if fitted.started_from == frozenset(richer):
+            return near
         problem, richer_values = fitted.problem, self.fitted(richer).named_values()
         start = np.array([richer_values[name] for name in problem.names])
         samples = problem.samples_at(start)
@@ -381,18 +388,11 @@ class Candidates:
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 
-    def _values_of(self, near: Solution) -> dict[str, float]:
-        """Parameter values of a solution, by name."""
-        return self.fitted(near.effects).problem.values_by_name(near.values)
-
-    def _required_square(self, near: Solution | None) -> float:
+    def _required_square(self, near: Solution) -> float:
         """Sum of squares below which a model with more effects has a relevant gain, N^2."""
-        if near is None:
-            return np.inf
         every = self.campaign.samples
-        square, samples = every.square(near.residuals), every.count
-        shows = self.policy.search.min_score_share * self.level.price(1, samples)
-        return square * float(np.exp(-shows / samples))
+        shows = self.policy.search.min_score_share * self.level.price(1, every.count)
+        return every.square(near.residuals) * float(np.exp(-shows / every.count))
 
     def tell(self, message: str, done: int, total: int) -> None:
         """Report progress to the user's callback, if there is one."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
+from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
 from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.likelihood import (
@@ -18,6 +18,7 @@ from jbf.estimation.likelihood import (
     robust_gain,
     share_of_gain,
 )
+from jbf.estimation.minimum import many_peaks
 from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import common_samples
 from jbf.estimation.search import search

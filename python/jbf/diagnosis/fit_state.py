@@ -45,6 +45,8 @@ class Fitted:
     approach, max_square
         An unfinished search, and the sum of squares after its first steps below which it is
         continued, N^2.
+    started_from
+        Effects of the model from whose solution the fit was started; None without one.
     promised
         Gain predicted by the linear model, in twice the log likelihood; infinite after ranking.
     peaks_searched
@@ -66,6 +68,7 @@ class Fitted:
     stepped: Array | None = None
     approach: Approach | None = None
     max_square: float = np.inf
+    started_from: frozenset[str] | None = None
     promised: float = np.inf
     peaks_searched: bool = False
     held_out: list[HeldOutPart] = field(default_factory=list)

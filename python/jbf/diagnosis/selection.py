@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from scipy import special
 
-from jbf.diagnosis.candidates import Candidates, many_peaks
+from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
 from jbf.diagnosis.evidence import (
     evidence,
@@ -27,6 +27,7 @@ from jbf.diagnosis.evidence import (
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
+from jbf.estimation.minimum import many_peaks
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_added, can_be_removed
 
@@ -233,9 +234,8 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     """
     policy = candidates.policy
     rivals = candidates.addable(present)
-    scores = dict(
-        zip(rivals, candidates.score_all([(*present, n) for n in rivals], base), strict=True)
-    )
+    gains = candidates.score_all([(*present, n) for n in rivals], base)
+    scores = dict(zip(rivals, gains, strict=True))
     candidates.calibrate(present)
     share = candidates.independent_share(base)
     least = policy.search.min_score_share * price_of(candidates, 1)

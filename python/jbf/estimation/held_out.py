@@ -28,6 +28,11 @@ EVALUATIONS = 12
 
 It limits the effort only.
 """
+LEAST_GAIN = 0.5
+"""Increase of twice the log likelihood by a step below which a refit ends.
+
+The predictions of other runs then change by much less than the noise. It is a numerical tolerance.
+"""
 SHORT = 3.0
 """Length of a step per parameter, in standard deviations, that is accepted without a search.
 
@@ -280,7 +285,8 @@ def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> A
     """Parameter values after a short search from `start`, with the noise of a solution."""
     if not part.open:
         return start
-    return search(part, kept, start, solution.noise, EVALUATIONS).values
+    noise = solution.noise
+    return search(part, kept, start, noise, EVALUATIONS, least_gain=LEAST_GAIN).values
 
 
 def _straight(solution: Solution, step_x: Array, group: list[int], residuals: list[Array]) -> bool:
@@ -344,7 +350,7 @@ def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     parts = []
     for half in (~first, first):
         kept = solution.samples.within([~half])
-        values = search(problem, kept, solution.values, solution.noise, EVALUATIONS).values
+        values = _fitted(problem, kept, solution.values, solution)
         identified = np.ones(solution.free, dtype=bool)
         parts.append(HeldOutPart((0,), (half,), identified, tuple(problem.residuals(values))))
     return parts

@@ -18,11 +18,13 @@ MOST_HELD = 2_000_000
 
 Larger results are computed again for each access. It limits the effort only.
 """
-MOST_SEARCHED = 400_000
-"""Largest number of samples in a search; if there are more, a selection of runs is used.
+SEARCHED = 6_000
+"""Number of samples that is sufficient for a search; if there are more, fewer runs are used.
 
 It limits the effort only.
 """
+LEAST_RUNS = 4
+"""Smallest number of runs that are selected for a search. It limits the effort only."""
 GROUP = 16_000_000
 """Largest number of derivatives held at a time during the computation of a solution.
 
@@ -76,16 +78,13 @@ def memory_groups(lengths: Sequence[int], width: int) -> list[list[int]]:
 
 
 def select_runs(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
-    """Select runs for a search, with half of the largest permitted number of samples.
+    """Select runs with a sufficient number of samples for a search.
 
-    All runs are selected if a selection has too few samples. The selection is at regular intervals
-    by name, and does not depend on the order of the runs.
+    The selection is at regular intervals by name, and does not depend on the order of the runs.
     """
-    interval = 2.0 * sum(lengths) / MOST_SEARCHED
-    if interval <= 2.0 or len(lengths) < 2.0 * interval:
-        return list(range(len(lengths)))
+    interval = max(min(sum(lengths) // SEARCHED, len(lengths) // LEAST_RUNS), 1)
     by_name = sorted(range(len(names)), key=lambda i: names[i])
-    return sorted(by_name[k] for k in range(0, len(names), int(np.ceil(interval))))
+    return sorted(by_name[::interval])
 
 
 def triangular(r: Array, j: Array) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ maximum of the likelihood if an effect causes several maxima.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,9 +21,9 @@ from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import Method, SearchResult, Visited, other_peaks, search
+from jbf.estimation.search import SearchResult, Visited, other_peaks, search
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import find_effect, find_law
+from jbf.models.catalogue import Parameter, find_effect, find_law
 
 Array = npt.NDArray[np.float64]
 TRIAL_EVALUATIONS = 6
@@ -37,16 +37,10 @@ FOLLOWED = 2
 
 It limits the effort only.
 """
-MANY = 24
-"""Largest number of starting points that are all evaluated on the complete campaign.
+KEPT = 12
+"""Number of starting points kept after the starting values of each effect were combined.
 
 It limits the effort only.
-"""
-LIKELY = 6
-"""Divisor of a larger number of starting points that are kept; at least `MANY` are kept.
-
-They are ranked on a single run: the one with the highest speed, which covers all speeds. It bounds
-the computing time only.
 """
 LOOKED = 3
 """Number of evaluations of a first, short search (`Approach.look`).
@@ -63,6 +57,11 @@ of a wrong law have many local minima. It limits the effort only.
 """
 NESTED_EVALUATIONS = 30
 """Evaluations of a fit of the law without its effects. It limits the effort only."""
+
+
+def many_peaks(effects: Iterable[str]) -> bool:
+    """Whether the likelihood of a model with any of these effects has many local maxima."""
+    return any(find_effect(name).peaks for name in effects)
 
 
 @dataclass(frozen=True)
@@ -113,7 +112,7 @@ class Approach:
         stepped: Array | None = None,
     ) -> None:
         self.problem, self.thinned = problem, problem.thinned
-        self._groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
+        self._seeds = seeds
         self._each = each
         self._stepped = [] if stepped is None else [stepped]
         self._squares: dict[bytes, float] = {}
@@ -128,29 +127,33 @@ class Approach:
     @cached_property
     def starts(self) -> list[Array]:
         """Starting points in order of increasing sum of squares."""
-        groups = [self._likely(k) for k in range(len(self._groups))]
+        groups = [self._likely(k) for k in range(len(self._seeds))]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
         return sorted(itertools.chain(*groups, self._stepped), key=self._square)
 
     def _likely(self, k: int) -> list[Array]:
-        """Starting points of seed `k`; if there are many, only the best ones on one run."""
-        if k not in self._kept:
-            self._kept[k] = self._best_on_fastest_run(self._groups[k])
-        return self._kept[k]
+        """Best starting points of seed `k`.
 
-    def _best_on_fastest_run(self, group: list[Array]) -> list[Array]:
-        """Starting points with the smallest sums of squares on the run with the highest speed."""
-        thinned = self.thinned
-        runs = thinned.campaign.prepared
-        if len(group) <= MANY or len(runs) < 2:
-            return group
-        top_speeds = [float(np.max(np.abs(p.motion.velocity))) for p in runs]
-        fastest = [int(np.argmax(top_speeds))]
-        samples = thinned.campaign.samples.only(fastest)
-        squares = [samples.square(thinned.residuals(start, fastest)) for start in group]
-        order = np.argsort(squares, kind="stable")
-        return [group[i] for i in order[: max(MANY, len(group) // LIKELY)]]
+        The starting values of the law, then of each effect, are combined with the best points so
+        far. The further effects are at their null meanwhile, and the points are compared on the run
+        with the highest speed, which covers all speeds.
+        """
+        if k in self._kept:
+            return self._kept[k]
+        names, pages = self.problem.names, list(self.problem.parameters.values())
+        known = {**self._seeds[k], **self.problem.fixed}
+        first = [known.get(name, _null(page)) for name, page in zip(names, pages, strict=True)]
+        kept = [np.array(first)]
+        unknown = (i for i, name in enumerate(names) if name not in known)
+        for _, group in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
+            indices = list(group)
+            choices = list(itertools.product(*(pages[i].starts for i in indices)))
+            kept = [_replaced(point, indices, choice) for point in kept for choice in choices]
+            if len(kept) > KEPT:
+                kept = sorted(kept, key=self._fastest_square)[:KEPT]
+        self._kept[k] = kept
+        return kept
 
     def _square(self, values: Array) -> float:
         """Sum of squares of weighted residuals at a starting point, N^2, computed once."""
@@ -158,6 +161,13 @@ class Approach:
         if key not in self._squares:
             self._squares[key] = self.thinned.square(values)
         return self._squares[key]
+
+    def _fastest_square(self, values: Array) -> float:
+        """Sum of squares of weighted residuals of the run with the highest speed, N^2."""
+        campaign = self.thinned.campaign
+        top_speeds = [float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared]
+        fastest = [int(np.argmax(top_speeds))]
+        return campaign.samples.only(fastest).square(self.thinned.residuals(values, fastest))
 
     def look(self, near: Solution) -> Look:
         """Search by a few steps from the first seed; compute the gain over a smaller model."""
@@ -198,7 +208,6 @@ class Approach:
         max_square: float = np.inf,
         followed: int = FOLLOWED,
         steps: int = TRIAL_EVALUATIONS,
-        method: Method = "dogbox",
     ) -> Solution:
         """Continue the search from the best starting points, and return its solution.
 
@@ -208,19 +217,19 @@ class Approach:
             Maximum number of evaluations; enough to rank candidates, or to converge.
         max_square
             Sum of squares after the first steps, N^2, from which the search is not continued.
-        followed, steps, method
-            Number of starting points, number of evaluations for each of them before only the best
-            search is continued, and method of these first searches.
+        followed, steps
+            Number of starting points, and number of evaluations for each of them before only the
+            best search is continued.
         """
         problem, thinned, visited = self.problem, self.thinned, self.visited
         thinned_samples, starts = thinned.campaign.samples, self.starts
         best = SearchResult(starts[0], False, "")
         if len(starts) > 1:
             trials = starts[:followed]
-            peaks = any(find_effect(name).peaks for name in problem.effects)
+            peaks = many_peaks(problem.effects)
             ends = []
             for start in trials:
-                ends.append(search(thinned, thinned_samples, start, WHITE, steps, method, visited))
+                ends.append(search(thinned, thinned_samples, start, WHITE, steps, visited))
                 if peaks:
                     # Two searches that meet may separate again towards different maxima.
                     visited.ended.clear()
@@ -229,7 +238,7 @@ class Approach:
             )
         end = replace(best, converged=False, message="not followed")
         if len(starts) == 1 or _square(problem, thinned, visited, best.values) < max_square:
-            if not best.converged or method != "dogbox":
+            if not best.converged:
                 # The search continues where an earlier one ended.
                 visited.ended.clear()
                 best = search(
@@ -251,12 +260,22 @@ def approach(
     *,
     followed: int = FOLLOWED,
     steps: int = TRIAL_EVALUATIONS,
-    method: Method = "dogbox",
 ) -> Solution:
     """Rank the starting points, and search from the best one assuming white noise."""
-    return Approach(problem, seeds).follow(
-        evaluations, followed=followed, steps=steps, method=method
-    )
+    return Approach(problem, seeds).follow(evaluations, followed=followed, steps=steps)
+
+
+def _null(page: Parameter) -> float:
+    """Value of a parameter at which its effect has no influence, or its first starting value."""
+    null = page.null
+    return null if null is not None and np.isfinite(null) else page.starts[0]
+
+
+def _replaced(point: Array, indices: Sequence[int], values: Sequence[float]) -> Array:
+    """Copy of a point with other values of the parameters with these indices."""
+    moved: Array = point.copy()
+    moved[list(indices)] = values
+    return moved
 
 
 def _log_ratio(before: float, after: float) -> float:
@@ -338,7 +357,6 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
             MAX_EVALUATIONS,
             followed=FOLLOWED_IN_A_FIT,
             steps=MAX_EVALUATIONS,
-            method="trf",
         )
     return search_peaks(problem, settle(problem, near))
 

@@ -12,7 +12,6 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.least_squares import MOST_SEARCHED
 from jbf.models.catalogue import find_effect, find_law
 from jbf.models.user_effects import UserEffect
 from jbf.models.user_laws import UserLaw
@@ -22,6 +21,11 @@ R = TypeVar("R")
 
 MOST_AT_ONCE = 4
 """Largest number of parallel fits; with more, the interpreter lock is the bottleneck.
+
+It limits the effort only.
+"""
+LONG = 400_000
+"""Number of samples above which fits are not run in parallel, because of their memory.
 
 It limits the effort only.
 """
@@ -35,7 +39,7 @@ def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     """
     user_defined = isinstance(find_law(law), UserLaw)
     user_defined = user_defined or any(isinstance(find_effect(n), UserEffect) for n in effects)
-    if user_defined or campaign.samples.count > MOST_SEARCHED:
+    if user_defined or campaign.samples.count > LONG:
         return 1
     variable = os.environ.get("RAYON_NUM_THREADS", "")
     threads = int(variable) if variable.isdecimal() else 0

@@ -1,4 +1,4 @@
-"""Least squares on innovations from one starting point, by Gauss-Newton steps within bounds.
+"""Least squares on innovations from one starting point, within bounds.
 
 Searches of one problem share their evaluations. A search that starts at the end of another search
 does not evaluate this point again, and a search ends if it reaches a point of another search.
@@ -10,13 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize
 
-from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.levenberg_marquardt import minimise
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
@@ -35,8 +33,11 @@ hundredth. It is a numerical tolerance.
 """
 ENDED = 1e-6
 """Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
-STATIONARY = 1e-8
-"""Predicted relative decrease below which a point is a minimum. It is a numerical tolerance."""
+LONGEST = 3.0
+"""Largest change of the logarithm of a scale parameter in one step: a factor of 20.
+
+It affects the path of a search only.
+"""
 REACH = 5.0
 """Range of a scan for other maxima, as a factor on the value upwards and downwards.
 
@@ -46,7 +47,6 @@ POINTS = 41
 """Number of points of a scan for other maxima. It is a numerical resolution."""
 CLIMBED = 2
 """Number of maxima of a scan that are followed by a search. It limits the effort only."""
-Method = Literal["dogbox", "trf"]
 
 
 @dataclass(frozen=True)
@@ -130,18 +130,14 @@ class _Joined(Exception):
     """Signal that a search has reached a point that another search has visited."""
 
 
-class _Converged(Exception):
-    """Signal that a Gauss-Newton step would reduce the sum of squares by less than `STATIONARY`."""
-
-
 def search(
     problem: Problem,
     samples: Samples,
     start: Array,
     noise: Noise,
     evaluations: int,
-    method: Method = "dogbox",
     visited: Visited | None = None,
+    least_gain: float = 0.0,
 ) -> SearchResult:
     """Minimise the squared innovations from one starting point.
 
@@ -149,18 +145,18 @@ def search(
     ----------
     evaluations
         Maximum number of evaluations.
-    method
-        `dogbox` takes the fewest steps. `trf` stays away from the bounds and finds lower minima
-        where a law is wrong.
     visited
         Evaluations of other searches of this problem, on these samples and with this noise. The
         search ends at a point visited by one of them that ended lower.
+    least_gain
+        Increase of twice the log likelihood by a step below which the search ends; the relative
+        decrease of the sum of squares is at least `ENDED` in any case.
     """
     memory = Visited() if visited is None else visited
     path: list[SearchPoint] = []
 
-    def evaluate(x: Array) -> SearchPoint:
-        """Point of the search at the variables `x`, evaluated at most once."""
+    def evaluate(x: Array) -> tuple[Array, Array]:
+        """Innovations and Jacobian at the variables `x`, evaluated at most once."""
         values = problem.decode(x, start)
         point = memory.at(values)
         if point is None:
@@ -176,46 +172,17 @@ def search(
             path.append(point)
             if visited is not None and any(_joins(point, other) for other in memory.ended):
                 raise _Joined
-        return point
+        return point.residual, point.jacobian
 
-    def residual(x: Array) -> Array:
-        """Innovations at the variables `x`, in triangular form."""
-        return -evaluate(x).residual
-
-    def jacobian(x: Array) -> Array:
-        """Jacobian of the innovations at the variables `x`, in triangular form."""
-        point = evaluate(x)
-        left = unexplained_square(point.jacobian, point.residual)
-        if point.square - left <= STATIONARY * point.square:
-            raise _Converged
-        return point.jacobian
-
-    low, high = problem.encode(problem.lower), problem.encode(problem.upper)
-    x0 = problem.encode(start)
-    margin = 1e-9 * np.maximum(np.abs(high - low), 1.0)
-    margin = np.minimum(margin, 0.25 * (high - low))
+    bounds = problem.encode(problem.lower), problem.encode(problem.upper)
+    longest = np.where(problem.log[problem.open], LONGEST, np.inf)
+    tolerance = max(ENDED, least_gain / max(samples.count, 1))
     try:
-        end = optimize.least_squares(
-            residual,
-            np.clip(x0, low + margin, high - margin),
-            jac=jacobian,
-            bounds=(low, high),
-            method=method,
-            x_scale="jac",
-            # The tolerance, a hundredth of a unit of chi-square, is far below any decision
-            # threshold.
-            xtol=1e-7,
-            ftol=ENDED,
-            gtol=1e-12,
-            max_nfev=evaluations,
-        )
-        values = problem.decode(end.x, start)
-        found = SearchResult(values, bool(end.status > 0), str(end.message))
+        end = minimise(evaluate, problem.encode(start), bounds, longest, evaluations, tolerance)
+        found = SearchResult(problem.decode(end.x, start), end.converged, end.message)
     except _Joined:
         least = min(path, key=lambda point: point.square)
         return SearchResult(least.values, False, "joined another search")
-    except _Converged:
-        found = SearchResult(path[-1].values, True, "converged")
     if visited is not None:
         memory.ended.append(path)
     return found

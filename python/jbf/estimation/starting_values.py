@@ -29,6 +29,11 @@ CELL_ERROR = 0.03
 
 It only starts a search.
 """
+MOST_CELL_PLAY = 0.25
+"""Largest backlash of a load cell, as a fraction of the largest force.
+
+A larger one would be friction or elasticity of the machine. It defines an effect, not a criterion.
+"""
 SHORTEST_M = 1e-9
 """Lower limit of a stroke, m, which is used for a drive that does not move."""
 BEYOND = 0.1
@@ -246,6 +251,12 @@ def _limited_by_travel(page: Parameter, campaign: Campaign) -> Parameter:
     return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
 
+def _limited_by_force(page: Parameter, campaign: Campaign) -> Parameter:
+    """Limit the bounds of the backlash of a load cell by the largest recorded force."""
+    upper = min(page.upper, MOST_CELL_PLAY * _largest_n(campaign))
+    return replace(page, upper=max(upper, page.lower + 1e-6))
+
+
 def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
     """Limit the bounds of a time parameter by the duration of the records.
 
@@ -290,6 +301,8 @@ def with_starts(
             if page.start in PITCHES:
                 page = _limited_by_travel(page, campaign)
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
+        if page.start == "cell_play":
+            page = _limited_by_force(page, campaign)
         if page.start in RULES_OF_ANY_LAW:
             page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))
         if page.start in RULES_BESIDE_THE_CATALOGUE:

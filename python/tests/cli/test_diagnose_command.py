@@ -59,7 +59,7 @@ def test_diagnose_prints_up_to_30_lines_by_default_more_if_full_and_one_if_quiet
 def test_diagnosis_beyond_the_work_limit_writes_the_partial_result_and_exits_with_2(
     slide: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(work, "ANY_STEPS", 1e6)
+    monkeypatch.setattr(work, "ANY_STEPS", 5e5)
     monkeypatch.setattr(work, "STEPS_A_SAMPLE", 0.0)
     model, page, out = tmp_path / "m.toml", tmp_path / "d.html", tmp_path / "d.json"
     options = ["--out", str(model), "--report", str(page), "--json", str(out)]

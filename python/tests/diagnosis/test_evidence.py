@@ -229,8 +229,8 @@ def test_gain_below_the_quantisation_error_is_not_evidence(step_n: float, counts
 
 def test_fit_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
     candidates = coulomb_candidates(linear_runs("mass"))
-    rich = candidates.converge(("inertia", "sensor_offset"))
     best = candidates.converge(("inertia",))
+    rich = candidates.converge(("inertia", "sensor_offset"))
     fitted = candidates.fitted(("inertia",))
     values = np.where(np.array(fitted.problem.names) == "inertia.m_e", 0.0, best.values)
     fitted.improve(fitted.problem.solution(values, best.samples, best.noise))

@@ -8,7 +8,7 @@ from by_hand import coulomb, four_runs
 from coulomb_problems import VALUES, coulomb_problem, values_of
 from jbf import InputError, Parameter, Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.least_squares import MOST_SEARCHED, select_runs, triangular
+from jbf.estimation.least_squares import LEAST_RUNS, SEARCHED, select_runs, triangular
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import BOUNDLESS, Problem, bounded, named_values
@@ -168,12 +168,13 @@ def test_triangular_rows_preserve_all_inner_products() -> None:
     assert triangular(r[:0], j[:0])[1].shape == (0, 4)
 
 
-def test_search_above_the_sample_limit_uses_equidistant_runs_sorted_by_name() -> None:
+def test_search_of_many_samples_uses_equidistant_runs_sorted_by_name() -> None:
     names = [f"{k:02d}" for k in range(20)]
-    length = 2 * MOST_SEARCHED // 20
+    length = 4 * SEARCHED // 20
     assert select_runs([length] * 20, names) == [0, 4, 8, 12, 16]
     assert select_runs([length] * 20, names[::-1]) == [3, 7, 11, 15, 19]
-    for lengths in ([length // 2] * 20, [10 * length] * 2):
+    assert len(select_runs([100 * length] * 20, names)) == LEAST_RUNS
+    for lengths in ([length // 4] * 20, [10 * length] * 2):
         assert select_runs(lengths, names[: len(lengths)]) == list(range(len(lengths)))
 
 

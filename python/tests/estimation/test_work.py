@@ -116,12 +116,12 @@ def test_bootstrap_beyond_its_time_limit_raises_unfinished_with_the_given_fit() 
 
 @pytest.fixture
 def interrupting() -> Iterator[str]:
-    """A law that simulates Ctrl-C at its 60th evaluation."""
+    """A law that simulates Ctrl-C at its 120th evaluation."""
     calls: list[int] = []
 
     def interrupting_law(velocity, F_c, F_v, v_0):  # type: ignore[no-untyped-def]
         calls.append(1)
-        if len(calls) == 60:
+        if len(calls) == 120:
             raise KeyboardInterrupt
         return F_c * np.tanh(velocity / v_0) + F_v * velocity
 

@@ -1,0 +1,129 @@
+"""Nonlinear least squares within bounds by the Levenberg-Marquardt method.
+
+Each step is the minimum of the damped linear model within the bounds (Stark & Parker 1995). A
+variable at its bound therefore does not shorten the step of the others. `scipy` truncates a step at
+the first bound (`dogbox`), where the searches of this library often ended far from a minimum, or
+approaches a bound slowly (`trf`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize
+
+Array = npt.NDArray[np.float64]
+INITIAL_DAMPING = 1e-4
+"""Damping of the first step, relative to the squares of the columns of the Jacobian.
+
+It affects the path of a search only.
+"""
+LEAST_DECREASE = 1.0 / 3.0
+"""Smallest factor by which a successful step reduces the damping (Nielsen 1999).
+
+It affects the path of a search only.
+"""
+FIRST_INCREASE = 8.0
+"""Factor by which the first rejected step increases the damping; it doubles at each further one.
+
+It affects the path of a search only.
+"""
+MAX_DAMPING = 1e10
+"""Damping at which a search ends, because no step reduces the sum of squares.
+
+It is a numerical tolerance.
+"""
+ACCEPTED = 1e-4
+"""Smallest ratio of actual to predicted decrease of an accepted step.
+
+It affects the path of a search only.
+"""
+TRUSTED = 0.25
+"""Ratio of actual to predicted decrease above which a small decrease ends the search.
+
+It affects the path of a search only.
+"""
+STATIONARY = 1e-8
+"""Predicted relative decrease below which a point is a minimum. It is a numerical tolerance."""
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """End of a search: the variables, whether they are a minimum, and why the search ended."""
+
+    x: Array
+    converged: bool
+    message: str
+
+
+def minimise(
+    evaluate: Callable[[Array], tuple[Array, Array]],
+    start: Array,
+    bounds: tuple[Array, Array],
+    longest: Array,
+    evaluations: int,
+    tolerance: float,
+) -> Minimum:
+    """Minimise the sum of squares of residuals within bounds.
+
+    Parameters
+    ----------
+    evaluate
+        Function of the variables, shape (p,). It returns the residuals (measured minus predicted),
+        shape (n,), and the Jacobian of the prediction, shape (n, p).
+    start
+        Variables at the beginning, within the bounds.
+    bounds
+        Lower and upper bounds, each of shape (p,); lower < upper.
+    longest
+        Largest change of each variable in one step.
+    evaluations
+        Maximum number of evaluations.
+    tolerance
+        Relative decrease of the sum of squares below which the search has converged.
+    """
+    low, high = bounds
+    x = start
+    residual, jacobian = evaluate(x)
+    size = np.zeros(len(x))
+    damping, growth = INITIAL_DAMPING, FIRST_INCREASE
+    for _ in range(evaluations - 1):
+        size = np.maximum(size, np.linalg.norm(jacobian, axis=0))
+        square = float(residual @ residual)
+        within = np.maximum(low - x, -longest), np.minimum(high - x, longest)
+        step = _bounded_step(residual, jacobian, damping, size, within)
+        left = residual - jacobian @ step
+        predicted = square - float(left @ left)
+        if predicted <= STATIONARY * square:
+            return Minimum(x, True, "no step decreases the sum of squares")
+        trial = np.clip(x + step, low, high)
+        new_residual, new_jacobian = evaluate(trial)
+        decrease = square - float(new_residual @ new_residual)
+        ratio = decrease / predicted if np.isfinite(decrease) else -1.0
+        if ratio > ACCEPTED:
+            x, residual, jacobian = trial, new_residual, new_jacobian
+            damping *= max(LEAST_DECREASE, 1.0 - (2.0 * ratio - 1.0) ** 3)
+            growth = FIRST_INCREASE
+            if decrease <= tolerance * square and ratio > TRUSTED:
+                return Minimum(x, True, "the sum of squares decreases no further")
+        else:
+            damping *= growth
+            growth *= 2.0
+            if damping > MAX_DAMPING:
+                return Minimum(x, True, "no step decreases the sum of squares")
+    return Minimum(x, False, "the maximum number of evaluations is reached")
+
+
+def _bounded_step(
+    residual: Array, jacobian: Array, damping: float, size: Array, within: tuple[Array, Array]
+) -> Array:
+    """Minimum of the damped linear model within an interval of each variable."""
+    scale = np.where(size > 0.0, size, 1.0)
+    damped = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
+    target = np.concatenate([residual, np.zeros(len(scale))])
+    low, high = (limit * scale for limit in within)
+    inner = optimize.lsq_linear(damped, target, (low, high), method="bvls")
+    return np.asarray(inner.x / scale)

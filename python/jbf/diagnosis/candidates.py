@@ -19,6 +19,7 @@ from jbf.diagnosis.directions import RichestResidual
 from jbf.diagnosis.fit_state import Fitted, Reached
 from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.estimation.approach import Approach, approach, many_peaks
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import (
     HeldOutPart,
@@ -31,9 +32,10 @@ from jbf.estimation.held_out_comparison import ExtrapolatedRun, extrapolated_run
 from jbf.estimation.initial_state import has_unknown_start
 from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.likelihood import effective_share, likelihood_gain
-from jbf.estimation.minimum import Approach, approach, many_peaks, search_peaks, settle
+from jbf.estimation.minimum import polish, search_peaks, settle
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.problem import Problem
+from jbf.estimation.search import NEAR_MINIMUM
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_added, find_effect, reason_not_applicable
 from jbf.models.catalogue import effects as catalogue
@@ -131,22 +133,12 @@ class Candidates:
     # ---- score tests ------------------------------------------------------------------------
 
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
-        """Gain that a score test predicts for effects added to a smaller model, before any fit.
+        """Gain that a score test predicts for a model with effects added to that of `near`.
 
-        Parameters
-        ----------
-        effects
-            All effects of the larger model.
-        near
-            Solution of the smaller model.
-
-        Returns
-        -------
-        float
-            Gain in twice the log likelihood that one Gauss-Newton step predicts from the null of
-            the added effects, with the parameters of the law free; the maximum over all starting
-            values. Infinite where the null cannot be reached by a step, or where an effect shifts
-            or smooths friction jumps or has a free initial state.
+        It is the gain in twice the log likelihood that one Gauss-Newton step predicts from the null
+        of the added effects, with the parameters of the law free; the maximum over all starting
+        values. It is infinite where the null cannot be reached by a step, or where an effect shifts
+        or smooths friction jumps or has a free initial state.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -214,20 +206,20 @@ class Candidates:
     # ---- fits -------------------------------------------------------------------------------
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Fit a model with these effects approximately, from the solution `near` of another."""
+        """Fit a model approximately, from the solution `near` or of the most similar model."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
-            near = near or self._most_similar(effects)
+            near = self._most_similar(effects) if near is None else near
             way = fitted.approach or self._approach(fitted, effects, near)
             fitted.improve(way.follow(RANKING_EVALUATIONS, fitted.max_square))
             fitted.state, fitted.approach, fitted.promised = "ranked", None, np.inf
         return fitted.current_solution()
 
     def _most_similar(self, effects: Sequence[str]) -> Solution | None:
-        """Solution of the fitted model with the fewest other effects; None before the first fit."""
+        """Solution of the fitted model that differs by the fewest effects; None without a fit."""
         wanted = frozenset(effects)
         fits = [(k, f) for k, f in self._fitted.items() if f.state in ("ranked", "converged")]
-        # Of equally similar models, the one with more effects has a value for each parameter.
+        # Of equally similar models, one with more effects has values of more parameters.
         fits.sort(key=lambda fit: (len(wanted ^ fit[0]), -len(fit[0]), sorted(fit[0])))
         return fits[0][1].current_solution() if fits else None
 
@@ -280,21 +272,28 @@ class Candidates:
         near: Solution,
     ) -> None:
         """Apply a function to each set of effects in parallel threads and report progress."""
-        # Start the largest problems first.
+        # The largest problems first.
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         done = in_parallel(work, order, fits_at_once(self.campaign, self.law, self.names))
         for i, effects in enumerate(order):
-            added = ", ".join(name for name in effects if name not in near.effects)
-            self.tell(f"{doing} {added}", i, len(sets))
+            added = (name for name in effects if name not in near.effects)
+            self.tell(f"{doing} {', '.join(added)}", i, len(sets))
             next(done)
 
     def converge(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Return the converged solution of the fit of the law with these effects."""
+        """Return the solution of the fit with these effects, converged to `NEAR_MINIMUM`."""
         fitted = self.fitted(effects)
         if fitted.state != "converged":
-            fitted.solution = settle(fitted.problem, self.rank(effects, near))
+            ranked = self.rank(effects, near)
+            fitted.solution = settle(fitted.problem, ranked, least_gain=NEAR_MINIMUM)
             fitted.state = "converged"
         return fitted.current_solution()
+
+    def polish(self, effects: Sequence[str]) -> Solution:
+        """Continue the fit of a final model; its held-out predictions hardly change."""
+        fitted = self.fitted(effects)
+        fitted.solution = polish(fitted.problem, self.converge(effects))
+        return fitted.solution
 
     def search_peaks(self, effects: Sequence[str]) -> Solution:
         """Search for a higher maximum of the likelihood of a model with these effects.
@@ -305,12 +304,13 @@ class Candidates:
         if fitted.peaks_searched:
             return near
         fitted.peaks_searched = True
-        highest = search_peaks(fitted.problem, near)
+        highest = search_peaks(fitted.problem, near, NEAR_MINIMUM)
         if len(frozenset(effects)) > 1 and many_peaks(effects):
             # Repeat the fit from default values, without the earlier solutions.
             fresh = approach(fitted.problem, [{}], RANKING_EVALUATIONS)
             if likelihood_gain(fresh, highest) > -self.policy.search.rank_margin:
-                fresh = search_peaks(fitted.problem, settle(fitted.problem, fresh))
+                fresh = settle(fitted.problem, fresh, least_gain=NEAR_MINIMUM)
+                fresh = search_peaks(fitted.problem, fresh, NEAR_MINIMUM)
                 highest = fresh if likelihood_gain(fresh, highest) > 0.0 else highest
         fitted.improve(highest)
         return highest
@@ -318,17 +318,17 @@ class Candidates:
     def refit_from(self, effects: Sequence[str], richer: Sequence[str]) -> Solution:
         """Refit a smaller set of effects from the parameter values of a richer model.
 
-        The fit of the smaller model may have converged to a local minimum that the richer one
-        avoided.
+        Its fit may have converged to a local minimum that the richer model avoided.
         """
-        self.converge(richer)
+        self.converge(richer)  # a new fit of the smaller model starts from it
         near, fitted = self.converge(effects), self.fitted(effects)
         if fitted.started_from == frozenset(richer):
             return near
         problem, richer_values = fitted.problem, self.fitted(richer).named_values()
         start = np.array([richer_values[name] for name in problem.names])
         samples = problem.samples_at(start)
-        refit = settle(problem, problem.solution(start, samples, near.noise, False), samples)
+        unconverged = problem.solution(start, samples, near.noise, False)
+        refit = settle(problem, unconverged, samples, NEAR_MINIMUM)
         # With run-specific parameters, a wrong law can have a higher likelihood but a larger RMS.
         too_large = refit.rms > self.policy.selection.max_rms_ratio * near.rms
         if likelihood_gain(refit, near) > 0.0 and not too_large:
@@ -345,8 +345,8 @@ class Candidates:
         halved = sorted(indispensable_runs(self.fitted(richer).problem, after))
         held_out, richer_held_out = (self.held_out_parts(e, halved) for e in (present, richer))
         names = tuple(self.campaign.samples.runs[i] for i in halved)
-        compared = before, after, held_out, richer_held_out
-        return Confirmation.of(*compared, names, self.campaign.prepared)
+        prepared = self.campaign.prepared
+        return Confirmation.of(before, after, held_out, richer_held_out, names, prepared)
 
     def held_out_parts(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
@@ -390,9 +390,9 @@ class Candidates:
 
     def _required_square(self, near: Solution) -> float:
         """Sum of squares below which a model with more effects has a relevant gain, N^2."""
-        every = self.campaign.samples
-        shows = self.policy.search.min_score_share * self.level.price(1, every.count)
-        return every.square(near.residuals) * float(np.exp(-shows / every.count))
+        samples, share = self.campaign.samples, self.policy.search.min_score_share
+        shown = share * self.level.price(1, samples.count) / samples.count
+        return samples.square(near.residuals) * float(np.exp(-shown))
 
     def tell(self, message: str, done: int, total: int) -> None:
         """Report progress to the user's callback, if there is one."""

@@ -5,7 +5,6 @@ All values are in twice the log likelihood.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
@@ -13,12 +12,10 @@ from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
 from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.likelihood import (
     likelihood_gain,
-    next_step_gain,
     noise_at,
     robust_gain,
     share_of_gain,
 )
-from jbf.estimation.minimum import many_peaks
 from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import common_samples
 from jbf.estimation.search import search
@@ -125,64 +122,3 @@ def evidence_on_common_samples(
     values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
     refit = problem.solution(values, samples, noise_at(problem, samples, values))
     return min(gain, evidence(candidates, richer, refit, count_local_gain=count_local_gain))
-
-
-def swap_costs(
-    candidates: Candidates,
-    rest: tuple[str, ...],
-    others: Sequence[str],
-    current: Solution,
-    near: Solution,
-) -> dict[str, float]:
-    """Loss of evidence if one effect of the current model is replaced by another, for each other.
-
-    Parameters
-    ----------
-    rest
-        Effects of the current model without the replaced one.
-    others
-        Names of the replacements.
-    current, near
-        Solutions of the current model and of that with the effects `rest`.
-    """
-    # Fewer samples are independent where the residual of `current` is correlated.
-    share = candidates.independent_share(current)
-    sets = {name: (*rest, name) for name in others}
-
-    def cost(solution: Solution) -> float:
-        """Loss of evidence if a solution replaces the current one."""
-        lost = share * likelihood_gain(current, solution)
-        return lost + price_of(candidates, solution.free) - price_of(candidates, current.free)
-
-    policy = candidates.policy
-    costs = dict.fromkeys(others, cost(near))
-    scores = dict(zip(others, candidates.score_all(list(sets.values()), near), strict=True))
-    shows = policy.search.min_score_share * price_of(candidates, 1)
-    # Subtract the gain of the next step without the effect.
-    least = policy.search.min_swap_share * likelihood_gain(current, near) + next_step_gain(near)
-    open_names = [name for name in others if scores[name] > max(shows, least)]
-    # With many peaks, a step from one peak does not predict the height of another.
-    one_peak = [name for name in open_names if not many_peaks(sets[name])]
-    candidates.look_all([sets[name] for name in one_peak], near)
-    for name in one_peak:
-        looked = candidates.look(sets[name], near)
-        solution = looked.current_solution()
-        gain_to_come = policy.search.linear_gain_factor * looked.promised
-        could_gain = gain_to_come - likelihood_gain(solution, near)
-        if cost(solution) - share * could_gain >= policy.search.rank_margin:
-            costs[name] = cost(solution)
-            open_names.remove(name)
-    candidates.rank_all([sets[name] for name in open_names], near)
-    for name in open_names:
-        costs[name] = cost(candidates.rank(sets[name], near))
-        if costs[name] < policy.search.rank_margin:
-            solution = candidates.converge(sets[name], near)
-            if solution.rms > policy.selection.max_rms_ratio * current.rms:
-                # For a wrong model, the residual with the highest likelihood may have a larger RMS.
-                costs[name] = float("inf")
-                continue
-            # An effect without evidence replaces no other: its fit may be better only because it
-            # uses fewer samples.
-            gains = evidence_on_common_samples(candidates, solution, near) > 0.0
-            costs[name] = cost(solution if gains else near)
-    return costs

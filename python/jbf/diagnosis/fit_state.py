@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.directions import Directions
+from jbf.estimation.approach import Approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
 from jbf.estimation.held_out import HeldOutPart
-from jbf.estimation.minimum import Approach
 from jbf.estimation.problem import Problem, bounded
 from jbf.estimation.solution import Solution
 from jbf.models.driven import Driven
@@ -34,7 +34,7 @@ class Fitted:
     ----------
     state
         `posed` (not yet computed), `looked` (a few steps), `ranked` (enough steps for ranking) or
-        `converged`.
+        `converged` (to within `NEAR_MINIMUM`).
     score
         Gain predicted by the score test of the added effects in the first smaller model, in twice
         the log likelihood; infinite if the null cannot be reached by a step.
@@ -46,7 +46,7 @@ class Fitted:
         An unfinished search, and the sum of squares after its first steps below which it is
         continued, N^2.
     started_from
-        Effects of the model from whose solution the fit was started; None without one.
+        Effects of the model whose solution was among the starting points; None without one.
     promised
         Gain predicted by the linear model, in twice the log likelihood; infinite after ranking.
     peaks_searched
@@ -122,4 +122,4 @@ class Reached:
         # The remaining work is small and final: lift its limits.
         self.candidates.campaign.work.lift()
         problem = self.candidates.fitted(self.present).problem
-        return finish(problem, self.candidates.converge(self.present))
+        return finish(problem, self.candidates.polish(self.present))

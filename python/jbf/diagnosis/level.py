@@ -174,8 +174,8 @@ def score_test(
 ) -> tuple[float, Directions, Array]:
     """Score test of added effects at several starting values equivalent to a smaller model.
 
-    The starting values with the largest predicted gain are used. The Jacobian is computed from
-    thinned records if the records are long.
+    The starting values with the largest predicted gain are used. With more samples than a search
+    needs, the Jacobian is computed from selected runs (`Problem.searched`).
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def score_test(
     """
     thinned = problem.thinned
     # Samples next to jumps, which the smaller model excludes, would favour any effect.
-    samples = near.samples if thinned is problem else thinned.campaign.samples
+    samples = near.samples if thinned is problem else near.samples.only(problem.searched)
     is_added = np.array([thinned.names[i].split(".")[0] in added for i in thinned.open], dtype=bool)
     # At the null, the derivatives with respect to the other parameters are unchanged.
     reuse_rows = thinned is problem and near.free == np.count_nonzero(~is_added)

@@ -104,10 +104,10 @@ class Search:
         "one step from the null rarely underestimates the gain of the fit by more",
     )
     min_swap_share: float = documented(
-        0.05,
+        0.25,
         "minimum gain that the score test of another effect must predict for an exchange, as a "
         "share of the present effect's gain",
-        "the score test of an effect that fits equally well predicts far more",
+        "in fits of servo drives and machines, the gain was at most 3.9 times the predicted one",
     )
     rank_margin: float = documented(
         60.0,

@@ -29,8 +29,8 @@ from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.review import Names, start_model, weights
 from jbf.diagnosis.rounds import remainder_of, select, step
-from jbf.diagnosis.selection import Names, start_model, weights
 from jbf.diagnosis.verdict import (
     best_predicting,
     confounders,
@@ -299,9 +299,11 @@ def _with_law(
             present, remains = named, of_selection
         missing = tuple(name for name in named if name not in machine)
         kept = best_predicting(candidates, present, named)
+        final = candidates.polish(kept)
         if kept != steps[-1].effects:
             steps.append(step(candidates, kept, ()))
-        fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
+        steps[-1] = replace(steps[-1], rms=final.rms)
+        fit = finish(candidates.fitted(kept).problem, final)
     uncertain = effects_without_estimate(fit.parameters, missing, policy)
     doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
     steps = with_final_outcomes(steps, present, doubted)
@@ -380,7 +382,7 @@ def _values(fit: Fit) -> dict[str, float]:
 def _before(candidates: Candidates) -> Comparison:
     """Compare the base law, including the machine terms, with the records."""
     base = start_model(candidates)
-    bare = finish(candidates.fitted(base).problem, candidates.converge(base))
+    bare = finish(candidates.fitted(base).problem, candidates.polish(base))
     return compare_prepared(bare.model, candidates.campaign)
 
 

@@ -11,15 +11,8 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.residual_structure import find_residual_structure
-from jbf.diagnosis.selection import (
-    Follow,
-    Names,
-    Round,
-    reconsider,
-    start_model,
-    still_needed,
-    try_candidates,
-)
+from jbf.diagnosis.review import Names, reconsider, start_model, still_needed
+from jbf.diagnosis.selection import Follow, Round, try_candidates
 from jbf.diagnosis.terms import best_term_update, re_estimated_motion
 from jbf.errors import Unfinished
 from jbf.estimation.held_out import errors_by_run
@@ -80,7 +73,7 @@ def select(candidates: Candidates) -> Selected:
     ------
     Unfinished
         The first round exceeds the budget or the time limit. If a later one exceeds it, the
-        selection ends with the last model of which each effect was reviewed.
+        selection ends with the last model whose candidates were tested.
     """
     completed: list[Selected] = []
     try:
@@ -95,7 +88,7 @@ def select(candidates: Candidates) -> Selected:
 
 
 def _ended_early(last: Selected, stop: Unfinished) -> Selected:
-    """Return the last reviewed model as the result of an unfinished selection."""
+    """Return the last completed model as the result of an unfinished selection."""
     candidates, present, steps = last.candidates, last.present, list(last.steps)
     otherwise = FURTHER
     if steps[-1].effects != present:
@@ -128,7 +121,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
     visited = {frozenset(present)}
-    updates = 0
+    updates, review_due = 0, False
     while True:
         # Exclude samples at which this model shows a further initial-state transient.
         settled = without_further_transients(
@@ -166,11 +159,17 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             updates += 1
             candidates = candidates.with_campaign(update.campaign, update.motion_effects)
             kept = tuple(n for n in present if n in update.effects)
-            present = reconsider(candidates, still_needed(candidates, kept))
+            present, review_due = still_needed(candidates, kept), True
             visited, follow = {frozenset(present)}, "promising"
             # The model is tested again with the term: its step replaces the last one.
             steps.pop()
             continue
+        # The effects are reviewed once after changes of the observation model.
+        if ended and review_due:
+            present, review_due = reconsider(candidates, present), False
+            if frozenset(present) not in visited:
+                visited.add(frozenset(present))
+                continue
         # With residual structure, candidates with a small score are fitted, then pairs of them.
         if ended and follow == "promising" and remainder_of(candidates, present):
             follow = "all"
@@ -187,7 +186,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 remainders = _unconfirmed_candidate(candidates, present)
             return Selected(candidates, present, steps, remainders)
         visited.add(frozenset(extended))
-        present, follow = extended, "promising"
+        present, follow, review_due = extended, "promising", False
         completed.append(Selected(candidates, present, list(steps)))
 
 

@@ -1,9 +1,8 @@
-"""Stepwise selection: rounds that add an effect with evidence and review the effects present.
+"""One round of the selection: every candidate is tested in addition to the present effects.
 
-In a round every candidate is tested in addition to the present effects, in order of computing cost:
-a score test, an approximate fit, a converged fit. The candidate with the largest evidence is added
-if held-out runs confirm it. The other effects are then reviewed: an unnecessary effect is removed,
-and an effect is replaced by another one that has more evidence.
+The tests are, in order of computing cost, a score test, an approximate fit, and a converged fit.
+The candidate with the largest evidence is added if held-out runs confirm it. A candidate without
+evidence is added if independent units confirm it.
 """
 
 from __future__ import annotations
@@ -13,23 +12,15 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy import special
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
-from jbf.diagnosis.evidence import (
-    evidence,
-    evidence_on_common_samples,
-    full_gain,
-    price_of,
-    swap_costs,
-)
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain, price_of
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.review import units_confirm
+from jbf.estimation.approach import many_peaks
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
-from jbf.estimation.minimum import many_peaks
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import can_be_added, can_be_removed
 
 Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
@@ -100,10 +91,17 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
     ranked = _rank(candidates, present, base, follow)
-    leader, best, trials = None, 0.0, []
+    best, trials = 0.0, []
     unconfirmed: set[str] = set()
     bare = base.rms
     least = min((r.solution.rms for r in ranked if r.evidence > 0), default=bare)
+    # A wrong model has a smooth error, which resembles coloured noise. A candidate with a far
+    # smaller RMS than all candidates with evidence is therefore tested by units first.
+    far_better = [r for r in ranked if policy.selection.max_rms_ratio * r.solution.rms < least]
+    leader = _by_units(candidates, present, far_better)
+    if leader is not None:
+        richer = candidates.converge((*present, leader))
+        least, best = richer.rms, full_gain(candidates, richer, base)
     for candidate in sorted(ranked, key=lambda r: _has_larger_rms(r, least, policy)):
         name, gain = candidate.effect, candidate.evidence
         rms = min(candidate.solution.rms, bare)
@@ -149,19 +147,18 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         return try_candidates(candidates, present, "shown")
     if leader is None:
         tried = [r for r in ranked if r.effect not in unconfirmed]
-        leader, trials = _by_units(candidates, present, tried, trials)
-    ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
+        leader = _by_units(candidates, present, tried)
+    added = [_added_by_units(candidates, present, t) if t.effect == leader else t for t in trials]
+    ordered = tuple(sorted(added, key=lambda t: -t.evidence))
     return Round(ordered, leader, frozenset(unconfirmed))
 
 
-def _by_units(
-    candidates: Candidates, present: Names, ranked: Sequence[Ranked], trials: list[Trial]
-) -> tuple[str | None, list[Trial]]:
+def _by_units(candidates: Candidates, present: Names, ranked: Sequence[Ranked]) -> str | None:
     """Select the candidate with the largest likelihood gain that independent units confirm.
 
     In a correlated residual few samples are independent, and a slow or constant effect has little
-    evidence. Runs or strokes (the units) are independent even then. Returns its name, or None, and
-    the updated trials.
+    evidence. Runs or strokes (the units) are independent even then. None if no candidate is
+    confirmed.
     """
     base = candidates.converge(present)
     gains = {
@@ -171,43 +168,18 @@ def _by_units(
     }
     for name in sorted(gains, key=lambda name: -gains[name])[: candidates.policy.search.leaders]:
         if gains[name] > 0.0 and units_confirm(candidates, present, name):
-            confirmation = candidates.confirmation(present, name)
-            unit = candidates.campaign.rig.quantities.force
-            better = (
-                f"{confirmation.units} units are predicted better, p = {confirmation.chance:.1g}"
-            )
-            reason = f"{better}; {confirmation.describe(unit)}"
-            added = [
-                replace(t, outcome="added", reason=reason) if t.effect == name else t
-                for t in trials
-            ]
-            return name, added
-    return None, trials
+            return name
+    return None
 
 
-def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
-    """Whether an effect of at least the minimum size improves predictions of independent units."""
-    level = candidates.level
-    return candidates.confirmation(rest, name).units_confirm(level.chance, level.min_share)
-
-
-def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
-    """Whether an effect of the current model has evidence or is confirmed by held-out runs.
-
-    If another effect is missing, the residual may be so correlated that no effect has evidence. An
-    effect is needed even then if independent units confirm it, or if the held-out error is larger
-    without it.
-    """
-    full = candidates.converge(current)
-    if evidence(candidates, full, simpler) >= 0.0:
-        return True
-    if full_gain(candidates, full, simpler) <= 0.0:
-        return False
-    rest = tuple(e for e in current if e != name)
-    if units_confirm(candidates, rest, name):
-        return True
-    least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
-    return candidates.held_out_rms(rest) > least
+def _added_by_units(candidates: Candidates, present: Names, trial: Trial) -> Trial:
+    """Mark the trial of the selected effect as added, if by units with these as the reason."""
+    if trial.outcome == "added":
+        return trial
+    confirmation = candidates.confirmation(present, trial.effect)
+    better = f"{confirmation.units} units are predicted better, p = {confirmation.chance:.1g}"
+    unit = candidates.campaign.rig.quantities.force
+    return replace(trial, outcome="added", reason=f"{better}; {confirmation.describe(unit)}")
 
 
 def _gain_is_from_local_minimum(
@@ -301,100 +273,3 @@ def _limits_below_leader(
     )
     line = policy.search.rank_fraction * max(leads, 0.0) - policy.search.rank_margin
     return {name: gain for name, gain in most.items() if gain < line}
-
-
-def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
-    """Remove effects that have no evidence after a change of the sample weights or the campaign."""
-    current = tuple(effects)
-    for name in effects:
-        if not can_be_removed(name, current):
-            continue
-        rest = tuple(e for e in current if e != name)
-        simpler = candidates.refit_from(rest, current)
-        if not needed(candidates, current, name, simpler):
-            current = rest
-    return current
-
-
-def start_model(candidates: Candidates) -> Names:
-    """Select the machine terms of a drive that the runs require, estimated jointly with the law.
-
-    The fit with each term starts from the fit without it, since a search from the starting values
-    of all terms may end at a weight of zero.
-    """
-    present: Names = ()
-    for name in machine_of(candidates.campaign.rig, [n for n in TERMS if n in candidates.names]):
-        near = candidates.converge(present)
-        present = (*present, name)
-        candidates.look(present, near)
-        candidates.converge(present)
-    return still_needed(candidates, present)
-
-
-def reconsider(
-    candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
-) -> Names:
-    """Remove unnecessary effects, and replace an effect if another one has more evidence.
-
-    The review is repeated until the model no longer changes, since a replacement may make further
-    effects unnecessary.
-
-    Parameters
-    ----------
-    unconfirmed
-        Effects that held-out runs did not confirm in this round; not used as replacements.
-    """
-    seen = [present]
-    while (current := _reviewed_once(candidates, seen[-1], unconfirmed)) not in seen:
-        seen.append(current)
-    return current
-
-
-def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
-    """Review each effect once: keep, remove or replace it, and return the resulting effects."""
-    current = present
-    for name in present:
-        if len(current) < 2 or name not in current or not can_be_removed(name, current):
-            continue
-        rest = tuple(e for e in current if e != name)
-        candidates.search_peaks(rest)
-        simpler = candidates.refit_from(rest, current)
-        full = candidates.converge(current)
-        if not needed(candidates, current, name, simpler):
-            current = rest
-            continue
-        if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
-            continue  # inertia and weight do not imitate an effect; an offset may
-        others = [
-            other
-            for other in candidates.names
-            if not (other in current or other in unconfirmed) and can_be_added(other, rest)
-        ]
-        costs = swap_costs(candidates, rest, others, full, simpler)
-        best = min(costs, key=costs.__getitem__, default=name)
-        if best != name and costs[best] < -candidates.policy.selection.tie:
-            current = tuple(best if e == name else e for e in current)
-    return current
-
-
-def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float]]:
-    """Posterior weights of each effect and its alternatives, at equal prior odds, by name.
-
-    The alternatives of an effect are the candidates that have at least the minimum weight if
-    compared with this effect only (Kass & Raftery 1995). The effect is first, the others follow by
-    weight. An effect without alternatives has weight one.
-    """
-    full = candidates.converge(present)
-    posterior: dict[str, dict[str, float]] = {}
-    for name in present:
-        rest = tuple(e for e in present if e != name)
-        simpler = candidates.converge(rest)
-        others = [n for n in candidates.names if n not in present and can_be_added(n, rest)]
-        costs = swap_costs(candidates, rest, others, full, simpler)
-        close = {
-            other: cost for other, cost in costs.items() if cost < candidates.policy.selection.tie
-        }
-        order = [name, *sorted(close, key=lambda other: close[other])]
-        share = special.softmax([-0.5 * close.get(other, 0.0) for other in order])
-        posterior[name] = dict(zip(order, share.tolist(), strict=True))
-    return posterior

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.drive import TERMS, with_errors_of_motion
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.selection import start_model
+from jbf.diagnosis.review import start_model
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_parts

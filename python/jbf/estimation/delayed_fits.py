@@ -24,7 +24,7 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import corrected_for_delay, shifted
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import search
+from jbf.estimation.search import NEAR_MINIMUM, search
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 
@@ -311,6 +311,6 @@ def fit_with_errors(
         ratio = np.maximum(np.abs(residual) / sd, 1e-300)
         weights.append(weight * np.sqrt(np.minimum(1.0, huber / ratio)))
     samples = replace(plain, weight=tuple(weights), motion=motion)
-    end = search(problem, samples, values, WHITE, EVALUATIONS)
+    end = search(problem, samples, values, WHITE, EVALUATIONS, least_gain=NEAR_MINIMUM)
     values = problem.wrapped(end.values)
     return problem.solution(values, samples, WHITE, end.converged, end.message)

@@ -21,6 +21,7 @@ from jbf.estimation.delayed_fits import (
     likeliest,
     near_solution,
 )
+from jbf.estimation.minimum import polish
 from jbf.estimation.motion_error_scale import estimate_motion_errors, penalised_deviance
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
@@ -73,19 +74,20 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     large = share > settings.conditions.max_motion_share
     if not large and best.solution.rms > settings.noise.max_rms_ratio * plain_fit.rms:
         return plain, plain_fit
-    # Changes with less smoothing, with the other clock and before the corners were located are
-    # systematic errors, the latter two if the likelihood is similar.
-    others = [with_less_smoothing(best.problem, best.solution)[1]]
+    # Systematic errors are the changes of the parameters with less smoothing and, if their
+    # likelihoods are similar, with the other clock and without located corners.
+    solution = polish(best.problem, best.solution)
+    others = [with_less_smoothing(best.problem, solution)[1]]
     unclear = settings.motion.max_clock_deviance
     others += [
-        other.solution
+        polish(other.problem, other.solution)
         for other in dict.fromkeys(ends)
         if other is not best and abs(other.deviance - best.deviance) < unclear
     ]
-    values = best.problem.encode(best.solution.values)
+    values = best.problem.encode(solution.values)
     changes = [best.problem.encode(other.values) - values for other in others]
     change = np.sqrt(np.sum(np.square(changes), axis=0))
-    return best.problem, replace(best.solution, systematic=change)
+    return best.problem, replace(solution, systematic=change)
 
 
 def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

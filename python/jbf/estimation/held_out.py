@@ -17,7 +17,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.least_squares import triangular
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import search
+from jbf.estimation.search import NEAR_MINIMUM, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
@@ -27,11 +27,6 @@ EVALUATIONS = 12
 """Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs.
 
 It limits the effort only.
-"""
-LEAST_GAIN = 0.5
-"""Increase of twice the log likelihood by a step below which a refit ends.
-
-The predictions of other runs then change by much less than the noise. It is a numerical tolerance.
 """
 SHORT = 3.0
 """Length of a step per parameter, in standard deviations, that is accepted without a search.
@@ -286,7 +281,7 @@ def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> A
     if not part.open:
         return start
     noise = solution.noise
-    return search(part, kept, start, noise, EVALUATIONS, least_gain=LEAST_GAIN).values
+    return search(part, kept, start, noise, EVALUATIONS, least_gain=NEAR_MINIMUM).values
 
 
 def _straight(solution: Solution, step_x: Array, group: list[int], residuals: list[Array]) -> bool:

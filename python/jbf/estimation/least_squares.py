@@ -19,9 +19,10 @@ MOST_HELD = 2_000_000
 Larger results are computed again for each access. It limits the effort only.
 """
 SEARCHED = 6_000
-"""Number of samples that is sufficient for a search; if there are more, fewer runs are used.
+"""Approximate number of samples of the runs that are selected for searches and score tests.
 
-It limits the effort only.
+All runs are used below twice this number, or with fewer than twice `LEAST_RUNS` runs. It limits the
+effort only.
 """
 LEAST_RUNS = 4
 """Smallest number of runs that are selected for a search. It limits the effort only."""
@@ -78,7 +79,7 @@ def memory_groups(lengths: Sequence[int], width: int) -> list[list[int]]:
 
 
 def select_runs(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
-    """Select runs with a sufficient number of samples for a search.
+    """Select at least `LEAST_RUNS` runs with about `SEARCHED` samples or more, for a search.
 
     The selection is at regular intervals by name, and does not depend on the order of the runs.
     """

@@ -1,9 +1,14 @@
 """Nonlinear least squares within bounds by the Levenberg-Marquardt method.
 
-Each step is the minimum of the damped linear model within the bounds (Stark & Parker 1995). A
-variable at its bound therefore does not shorten the step of the others. `scipy` truncates a step at
-the first bound (`dogbox`), where the searches of this library often ended far from a minimum, or
-approaches a bound slowly (`trf`).
+A step s minimises ``|r - J s|^2 + d |D s|^2`` within the bounds, for residuals r, the Jacobian J of
+the prediction, damping d, and the largest norms D of the columns of J so far. The inner problem is
+solved by an active-set method. A variable at its bound does not shorten the step of the others,
+unlike in `dogbox` of scipy, which may then end far from a minimum.
+
+References
+----------
+Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05, Technical University of Denmark.
+Stark & Parker, Bounded-variable least-squares, Computational Statistics 10 (1995), 129-141.
 """
 
 from __future__ import annotations
@@ -21,10 +26,11 @@ INITIAL_DAMPING = 1e-4
 
 It affects the path of a search only.
 """
-LEAST_DECREASE = 1.0 / 3.0
-"""Smallest factor by which a successful step reduces the damping (Nielsen 1999).
+LEAST_FACTOR = 1.0 / 3.0
+"""Smallest factor on the damping after an accepted step.
 
-It affects the path of a search only.
+The factor is 1 - (2 r - 1)^3 for a ratio r of actual to predicted decrease, at most 2 (Nielsen
+1999). It affects the path of a search only.
 """
 FIRST_INCREASE = 8.0
 """Factor by which the first rejected step increases the damping; it doubles at each further one.
@@ -44,10 +50,8 @@ It affects the path of a search only.
 TRUSTED = 0.25
 """Ratio of actual to predicted decrease above which a small decrease ends the search.
 
-It affects the path of a search only.
+It is a numerical tolerance.
 """
-STATIONARY = 1e-8
-"""Predicted relative decrease below which a point is a minimum. It is a numerical tolerance."""
 
 
 @dataclass(frozen=True)
@@ -79,49 +83,55 @@ def minimise(
     bounds
         Lower and upper bounds, each of shape (p,); lower < upper.
     longest
-        Largest change of each variable in one step.
+        Largest change of each variable in one step; it may be infinite.
     evaluations
         Maximum number of evaluations.
     tolerance
-        Relative decrease of the sum of squares below which the search has converged.
+        Relative decrease of the sum of squares, predicted or achieved by a step, below which the
+        search has converged.
+
+    Returns
+    -------
+    Minimum
+        The variables with the smallest sum of squares, and why the search ended.
     """
     low, high = bounds
     x = start
     residual, jacobian = evaluate(x)
-    size = np.zeros(len(x))
-    damping, growth = INITIAL_DAMPING, FIRST_INCREASE
+    norms = np.zeros(len(x))
+    damping, increase = INITIAL_DAMPING, FIRST_INCREASE
     for _ in range(evaluations - 1):
-        size = np.maximum(size, np.linalg.norm(jacobian, axis=0))
+        norms = np.maximum(norms, np.linalg.norm(jacobian, axis=0))
         square = float(residual @ residual)
         within = np.maximum(low - x, -longest), np.minimum(high - x, longest)
-        step = _bounded_step(residual, jacobian, damping, size, within)
-        left = residual - jacobian @ step
-        predicted = square - float(left @ left)
-        if predicted <= STATIONARY * square:
-            return Minimum(x, True, "no step decreases the sum of squares")
+        step = _bounded_step(residual, jacobian, damping, norms, within)
+        linear = residual - jacobian @ step
+        predicted = square - float(linear @ linear)
+        if predicted <= tolerance * square:
+            return Minimum(x, True, "the sum of squares decreases by less than the tolerance")
         trial = np.clip(x + step, low, high)
         new_residual, new_jacobian = evaluate(trial)
         decrease = square - float(new_residual @ new_residual)
         ratio = decrease / predicted if np.isfinite(decrease) else -1.0
         if ratio > ACCEPTED:
             x, residual, jacobian = trial, new_residual, new_jacobian
-            damping *= max(LEAST_DECREASE, 1.0 - (2.0 * ratio - 1.0) ** 3)
-            growth = FIRST_INCREASE
+            damping *= max(LEAST_FACTOR, 1.0 - (2.0 * ratio - 1.0) ** 3)
+            increase = FIRST_INCREASE
             if decrease <= tolerance * square and ratio > TRUSTED:
-                return Minimum(x, True, "the sum of squares decreases no further")
+                return Minimum(x, True, "the sum of squares decreases by less than the tolerance")
         else:
-            damping *= growth
-            growth *= 2.0
+            damping *= increase
+            increase *= 2.0
             if damping > MAX_DAMPING:
-                return Minimum(x, True, "no step decreases the sum of squares")
+                return Minimum(x, np.isfinite(decrease), "no step decreases the sum of squares")
     return Minimum(x, False, "the maximum number of evaluations is reached")
 
 
 def _bounded_step(
-    residual: Array, jacobian: Array, damping: float, size: Array, within: tuple[Array, Array]
+    residual: Array, jacobian: Array, damping: float, norms: Array, within: tuple[Array, Array]
 ) -> Array:
     """Minimum of the damped linear model within an interval of each variable."""
-    scale = np.where(size > 0.0, size, 1.0)
+    scale = np.where(norms > 0.0, norms, 1.0)
     damped = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
     target = np.concatenate([residual, np.zeros(len(scale))])
     low, high = (limit * scale for limit in within)

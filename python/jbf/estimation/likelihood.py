@@ -171,7 +171,7 @@ def score_gain(problem: Problem, values: Array, near: Solution) -> float:
 
 
 def next_step_gain(solution: Solution) -> float:
-    """Log-likelihood gain that the next Gauss-Newton step predicts; zero after convergence."""
+    """Log-likelihood gain that the next Gauss-Newton step predicts; small after convergence."""
     r, j = solution.stacked()
     return promised_gain(r, j, len(r))
 
@@ -190,8 +190,8 @@ def noise_at(
 ) -> Noise:
     """Estimate the noise model of the residuals at some values, without the random effects of runs.
 
-    With many long runs, a selection of runs is used. `lines` holds the residuals and derivatives at
-    these values, if they are known.
+    Of many samples, those of selected runs are used (`Problem.searched`). `lines` holds the
+    residuals and derivatives at these values, if they are known.
     """
     selection = problem.searched
     samples = samples if len(selection) == len(samples.runs) else samples.only(selection)

@@ -1,52 +1,28 @@
-"""Minimisation of the sum of squares of a model, from its starting points to convergence.
+"""Minimisation of the sum of squares of a model from an approximate solution to convergence.
 
-`Approach` ranks the starting points and continues from the best one, assuming white noise. It may
-end after a few steps (`Look`), which estimate the log-likelihood gain of a model in a quarter of
-the computing time. `settle` converges with coloured noise. `search_peaks` searches for a higher
-maximum of the likelihood if an effect causes several maxima.
+`settle` converges with coloured noise. `search_peaks` searches for a higher maximum of the
+likelihood if an effect causes several maxima. `minimum` combines them with the approach from the
+starting points.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.approach import TRIAL_EVALUATIONS, approach
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
-from jbf.estimation.problem import Lines, Problem
+from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import SearchResult, Visited, other_peaks, search
+from jbf.estimation.search import NEAR_MINIMUM, SearchResult, other_peaks, search
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import Parameter, find_effect, find_law
+from jbf.models.catalogue import find_effect, find_law
 
 Array = npt.NDArray[np.float64]
-TRIAL_EVALUATIONS = 6
-"""Evaluations spent on each starting point before only the best one is followed.
-
-With half of them, an effect whose null is a flat region of the objective stays at its null. It
-bounds the computing time only.
-"""
-FOLLOWED = 2
-"""Number of starting points searched for a few evaluations when candidates are ranked.
-
-It limits the effort only.
-"""
-KEPT = 12
-"""Number of starting points kept after the starting values of each effect were combined.
-
-It limits the effort only.
-"""
-LOOKED = 3
-"""Number of evaluations of a first, short search (`Approach.look`).
-
-It starts from the best starting point of the first seed. It limits the effort only.
-"""
 MAX_EVALUATIONS = 60
 """Maximum number of evaluations of a search that converges. It limits the effort only."""
 FOLLOWED_IN_A_FIT = 6
@@ -59,238 +35,9 @@ NESTED_EVALUATIONS = 30
 """Evaluations of a fit of the law without its effects. It limits the effort only."""
 
 
-def many_peaks(effects: Iterable[str]) -> bool:
-    """Whether the likelihood of a model with any of these effects has many local maxima."""
-    return any(find_effect(name).peaks for name in effects)
-
-
-@dataclass(frozen=True)
-class Look:
-    """Result of a few steps of a fit, compared with a smaller model.
-
-    Attributes
-    ----------
-    values
-        Parameter values reached.
-    gain
-        Log-likelihood gain (2 x difference of log likelihood) reached so far.
-    promised
-        Log-likelihood gain predicted by the linear model at the best of the visited points.
-    lines
-        Residuals and Jacobian at these values; None if they were not stored.
-    """
-
-    values: Array
-    gain: float
-    promised: float
-    lines: Lines | None
-
-
-class Approach:
-    """Search for the minimum from the best of all starting points, assuming white noise.
-
-    Parameters
-    ----------
-    problem
-        The model.
-    seeds
-        Known values by name; the other parameters have their starting values.
-    each
-        Continue from the best starting point of each seed instead of the best of all.
-    stepped
-        One additional starting point: the end of a Gauss-Newton step from a smaller model. The
-        starting values are those of a strong effect. The minimum of a weak effect may be separated
-        from them by a maximum of the objective.
-    """
-
-    def __init__(
-        self,
-        problem: Problem,
-        seeds: Sequence[Mapping[str, float]],
-        *,
-        each: bool = False,
-        stepped: Array | None = None,
-    ) -> None:
-        self.problem, self.thinned = problem, problem.thinned
-        self._seeds = seeds
-        self._each = each
-        self._stepped = [] if stepped is None else [stepped]
-        self._squares: dict[bytes, float] = {}
-        self._kept: dict[int, list[Array]] = {}
-        self.visited = Visited()
-
-    @cached_property
-    def _nearest(self) -> Array:
-        """Starting point nearest to a smaller model: a step from it, or from the first seed."""
-        return min([*self._likely(0), *self._stepped], key=self._square)
-
-    @cached_property
-    def starts(self) -> list[Array]:
-        """Starting points in order of increasing sum of squares."""
-        groups = [self._likely(k) for k in range(len(self._seeds))]
-        if self._each:
-            groups = [[min(group, key=self._square)] for group in groups]
-        return sorted(itertools.chain(*groups, self._stepped), key=self._square)
-
-    def _likely(self, k: int) -> list[Array]:
-        """Best starting points of seed `k`.
-
-        The starting values of the law, then of each effect, are combined with the best points so
-        far. The further effects are at their null meanwhile, and the points are compared on the run
-        with the highest speed, which covers all speeds.
-        """
-        if k in self._kept:
-            return self._kept[k]
-        names, pages = self.problem.names, list(self.problem.parameters.values())
-        known = {**self._seeds[k], **self.problem.fixed}
-        first = [known.get(name, _null(page)) for name, page in zip(names, pages, strict=True)]
-        kept = [np.array(first)]
-        unknown = (i for i, name in enumerate(names) if name not in known)
-        for _, group in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
-            indices = list(group)
-            choices = list(itertools.product(*(pages[i].starts for i in indices)))
-            kept = [_replaced(point, indices, choice) for point in kept for choice in choices]
-            if len(kept) > KEPT:
-                kept = sorted(kept, key=self._fastest_square)[:KEPT]
-        self._kept[k] = kept
-        return kept
-
-    def _square(self, values: Array) -> float:
-        """Sum of squares of weighted residuals at a starting point, N^2, computed once."""
-        key = values.tobytes()
-        if key not in self._squares:
-            self._squares[key] = self.thinned.square(values)
-        return self._squares[key]
-
-    def _fastest_square(self, values: Array) -> float:
-        """Sum of squares of weighted residuals of the run with the highest speed, N^2."""
-        campaign = self.thinned.campaign
-        top_speeds = [float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared]
-        fastest = [int(np.argmax(top_speeds))]
-        return campaign.samples.only(fastest).square(self.thinned.residuals(values, fastest))
-
-    def look(self, near: Solution) -> Look:
-        """Search by a few steps from the first seed; compute the gain over a smaller model."""
-        problem, thinned, visited = self.problem, self.thinned, self.visited
-        samples = thinned.campaign.samples
-        search(thinned, samples, self._nearest, WHITE, LOOKED, visited=visited)
-        # The next search visits the same points and must not end there as a duplicate search.
-        visited.ended.clear()
-        points = list(visited.points.values())
-        lowest = min(points, key=lambda point: point.square)
-        linear = min(unexplained_square(point.jacobian, point.residual) for point in points)
-        before = samples.square([near.residuals[i] for i in problem.searched])
-        count = problem.campaign.samples.count
-        gain, promised = (count * _log_ratio(before, after) for after in (lowest.square, linear))
-        lines = visited.lines_at(lowest.values) if thinned is problem else None
-        visited.lowest = None
-        if near.noise.colour > 0.0:
-            # In noise of low frequency, an effect of high frequency has a large gain even if it
-            # reduces the sum of squares only slightly.
-            if lines is None:
-                return Look(lowest.values, gain, np.inf, None)
-            before = float(np.sum(near.stacked()[0] ** 2))
-            r, j = near.samples.stacked(*lines, near.noise)
-            gain = max(gain, count * _log_ratio(before, float(r @ r)))
-            promised = max(promised, count * _log_ratio(before, unexplained_square(j, r)))
-        return Look(lowest.values, gain, promised, lines)
-
-    def solution_of(self, look: Look, near: Solution) -> Solution:
-        """Convert the result of a first look to a solution, with the noise of the smaller model."""
-        problem, lines = self.problem, look.lines
-        samples = problem.samples_at(look.values, None if lines is None else lines[0])
-        values = problem.wrapped(look.values)
-        return problem.solution(values, samples, near.noise, False, "not followed", lines)
-
-    def follow(
-        self,
-        evaluations: int,
-        max_square: float = np.inf,
-        followed: int = FOLLOWED,
-        steps: int = TRIAL_EVALUATIONS,
-    ) -> Solution:
-        """Continue the search from the best starting points, and return its solution.
-
-        Parameters
-        ----------
-        evaluations
-            Maximum number of evaluations; enough to rank candidates, or to converge.
-        max_square
-            Sum of squares after the first steps, N^2, from which the search is not continued.
-        followed, steps
-            Number of starting points, and number of evaluations for each of them before only the
-            best search is continued.
-        """
-        problem, thinned, visited = self.problem, self.thinned, self.visited
-        thinned_samples, starts = thinned.campaign.samples, self.starts
-        best = SearchResult(starts[0], False, "")
-        if len(starts) > 1:
-            trials = starts[:followed]
-            peaks = many_peaks(problem.effects)
-            ends = []
-            for start in trials:
-                ends.append(search(thinned, thinned_samples, start, WHITE, steps, visited))
-                if peaks:
-                    # Two searches that meet may separate again towards different maxima.
-                    visited.ended.clear()
-            best = min(
-                ends, key=lambda result: visited.square(thinned, thinned_samples, result.values)
-            )
-        end = replace(best, converged=False, message="not followed")
-        if len(starts) == 1 or _square(problem, thinned, visited, best.values) < max_square:
-            if not best.converged:
-                # The search continues where an earlier one ended.
-                visited.ended.clear()
-                best = search(
-                    thinned, thinned_samples, best.values, WHITE, evaluations, visited=visited
-                )
-            # The minimum for all samples is near that for the thinned samples.
-            end = replace(best, converged=best.converged and thinned is problem)
-        values, lines = end.values, visited.lines_at(end.values) if thinned is problem else None
-        samples = problem.samples_at(values, None if lines is None else lines[0])
-        noise = noise_at(problem, samples, values, lines)
-        values = problem.wrapped(values)
-        return problem.solution(values, samples, noise, end.converged, end.message, lines)
-
-
-def approach(
-    problem: Problem,
-    seeds: Sequence[Mapping[str, float]],
-    evaluations: int,
-    *,
-    followed: int = FOLLOWED,
-    steps: int = TRIAL_EVALUATIONS,
+def settle(
+    problem: Problem, near: Solution, samples: Samples | None = None, least_gain: float = 0.0
 ) -> Solution:
-    """Rank the starting points, and search from the best one assuming white noise."""
-    return Approach(problem, seeds).follow(evaluations, followed=followed, steps=steps)
-
-
-def _null(page: Parameter) -> float:
-    """Value of a parameter at which its effect has no influence, or its first starting value."""
-    null = page.null
-    return null if null is not None and np.isfinite(null) else page.starts[0]
-
-
-def _replaced(point: Array, indices: Sequence[int], values: Sequence[float]) -> Array:
-    """Copy of a point with other values of the parameters with these indices."""
-    moved: Array = point.copy()
-    moved[list(indices)] = values
-    return moved
-
-
-def _log_ratio(before: float, after: float) -> float:
-    """Logarithm of a ratio of sums of squares, finite for zero squares."""
-    return float(np.log(max(before, 1e-300) / max(after, 1e-300)))
-
-
-def _square(problem: Problem, thinned: Problem, visited: Visited, values: Array) -> float:
-    """Sum of squares of weighted residuals over all samples, N^2."""
-    if thinned is problem:
-        return visited.square(problem, problem.campaign.samples, values)
-    return problem.square(values)
-
-
-def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> Solution:
     """Continue from a solution to convergence, with coloured noise.
 
     The noise is white if the estimates with coloured noise increase the RMS too much: the residual
@@ -301,30 +48,48 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
     samples
         Samples to fit. By default those of the campaign, with those next to jumps weighted again
         after the first search.
+    least_gain
+        Gain at which the last search ends (`search`). The first one, with white noise, ends at
+        `NEAR_MINIMUM`, and is continued if the noise is white and `least_gain` smaller.
     """
     samples = problem.campaign.samples if samples is None else samples
     end, noise = SearchResult(near.values, near.converged, near.message), near.noise
     if not near.converged:
-        end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS)
+        end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS, least_gain=NEAR_MINIMUM)
         noise = noise_at(problem, samples, end.values)
     if near.samples is not samples:
         # Search first with full weights, then with reduced weights of samples next to jumps.
         weighted = problem.samples_at(end.values)
         unconverged = problem.solution(end.values, weighted, noise, False, end.message)
-        return settle(problem, unconverged, weighted)
-    if noise.colour > 0.0:
-        coloured = search(problem, samples, end.values, noise, MAX_EVALUATIONS)
+        return settle(problem, unconverged, weighted, least_gain)
+    if not noise.white:
+        coloured = search(
+            problem, samples, end.values, noise, MAX_EVALUATIONS, least_gain=least_gain
+        )
         most = samples.settings.noise.max_rms_ratio**2 * problem.square(end.values, samples)
         if problem.square(coloured.values, samples) <= most:
             end = coloured
             noise = noise_at(problem, samples, end.values)
         else:
             noise = WHITE
+    if noise.white and not near.converged and least_gain < NEAR_MINIMUM:
+        end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS, least_gain=least_gain)
     return problem.solution(problem.wrapped(end.values), samples, noise, end.converged, end.message)
 
 
-def search_peaks(problem: Problem, near: Solution) -> Solution:
-    """Search for the highest maximum of a likelihood with several maxima near a solution."""
+def polish(problem: Problem, near: Solution) -> Solution:
+    """Continue a fit to the smallest tolerance of a search, with the same samples and noise."""
+    end = search(problem, near.samples, near.values, near.noise, MAX_EVALUATIONS)
+    values = problem.wrapped(end.values)
+    exact = problem.solution(values, near.samples, near.noise, end.converged, end.message)
+    return replace(exact, systematic=near.systematic)
+
+
+def search_peaks(problem: Problem, near: Solution, least_gain: float = 0.0) -> Solution:
+    """Search for the highest maximum of a likelihood with several maxima near a solution.
+
+    `least_gain` is that of `search`.
+    """
     for effect in problem.effects:
         peak = find_effect(effect).peaks
         name = f"{effect}.{peak}"
@@ -342,7 +107,8 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
         ends = [search(problem, samples, s, noise, TRIAL_EVALUATIONS).values for s in starts]
         best = min(ends, key=square, default=near.values)
         if square(best) < square(near.values):
-            near = settle(problem, problem.solution(best, samples, noise, False))
+            unconverged = problem.solution(best, samples, noise, False)
+            near = settle(problem, unconverged, least_gain=least_gain)
     return near
 
 

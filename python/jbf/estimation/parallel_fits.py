@@ -24,8 +24,8 @@ MOST_AT_ONCE = 4
 
 It limits the effort only.
 """
-LONG = 400_000
-"""Number of samples above which fits are not run in parallel, because of their memory.
+MAX_PARALLEL_SAMPLES = 400_000
+"""Number of samples above which fits run one after another, since their matrices fill the memory.
 
 It limits the effort only.
 """
@@ -39,7 +39,7 @@ def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     """
     user_defined = isinstance(find_law(law), UserLaw)
     user_defined = user_defined or any(isinstance(find_effect(n), UserEffect) for n in effects)
-    if user_defined or campaign.samples.count > LONG:
+    if user_defined or campaign.samples.count > MAX_PARALLEL_SAMPLES:
         return 1
     variable = os.environ.get("RAYON_NUM_THREADS", "")
     threads = int(variable) if variable.isdecimal() else 0

@@ -194,7 +194,7 @@ class Problem:
 
     @cached_property
     def searched(self) -> list[int]:
-        """Indices of the runs that a search uses: a selection, if the campaign is large."""
+        """Indices of the runs that a search uses (`select_runs`)."""
         runs = self.campaign.prepared
         return select_runs([len(p.friction) for p in runs], [p.run.name for p in runs])
 

@@ -33,6 +33,13 @@ hundredth. It is a numerical tolerance.
 """
 ENDED = 1e-6
 """Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
+NEAR_MINIMUM = 0.5
+"""Gain (`least_gain`) at which a search ends whose result is only compared with others.
+
+These are fits of candidates, refits for held-out runs, fits with a given delay, and the first
+search of a fit. The gain is small compared with that by which an effect is accepted. It is a
+numerical tolerance.
+"""
 LONGEST = 3.0
 """Largest change of the logarithm of a scale parameter in one step: a factor of 20.
 
@@ -149,8 +156,9 @@ def search(
         Evaluations of other searches of this problem, on these samples and with this noise. The
         search ends at a point visited by one of them that ended lower.
     least_gain
-        Increase of twice the log likelihood by a step below which the search ends; the relative
-        decrease of the sum of squares is at least `ENDED` in any case.
+        Increase of twice the log likelihood, predicted or achieved by a step, below which the
+        search ends. The tolerance of the relative decrease of the sum of squares is the larger of
+        `ENDED` and `least_gain` divided by the number of samples.
     """
     memory = Visited() if visited is None else visited
     path: list[SearchPoint] = []

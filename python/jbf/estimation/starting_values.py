@@ -29,10 +29,10 @@ CELL_ERROR = 0.03
 
 It only starts a search.
 """
-MOST_CELL_PLAY = 0.25
-"""Largest backlash of a load cell, as a fraction of the largest force.
+MAX_CELL_HYSTERESIS = 0.25
+"""Largest half-width of the hysteresis of a load cell, as a fraction of the largest force.
 
-A larger one would be friction or elasticity of the machine. It defines an effect, not a criterion.
+A wider loop is friction or elasticity of the machine. It defines an effect, not a criterion.
 """
 SHORTEST_M = 1e-9
 """Lower limit of a stroke, m, which is used for a drive that does not move."""
@@ -252,9 +252,10 @@ def _limited_by_travel(page: Parameter, campaign: Campaign) -> Parameter:
 
 
 def _limited_by_force(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit the bounds of the backlash of a load cell by the largest recorded force."""
-    upper = min(page.upper, MOST_CELL_PLAY * _largest_n(campaign))
-    return replace(page, upper=max(upper, page.lower + 1e-6))
+    """Limit the half-width of the hysteresis of a load cell (`MAX_CELL_HYSTERESIS`)."""
+    largest_n = _largest_n(campaign)
+    upper = min(page.upper, MAX_CELL_HYSTERESIS * largest_n)
+    return replace(page, upper=max(upper, page.lower + 1e-6 * (largest_n or 1.0)))
 
 
 def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:

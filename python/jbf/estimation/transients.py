@@ -17,9 +17,9 @@ import numpy.typing as npt
 
 from jbf import _core
 from jbf.errors import InputError
+from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.initial_state import has_unknown_start, initial_memory
-from jbf.estimation.minimum import approach
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem

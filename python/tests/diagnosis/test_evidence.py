@@ -9,7 +9,7 @@ from jbf import Diagnosis, Rig, Run
 from jbf.diagnosis import Trial
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, price_of
 from jbf.diagnosis.level import score_test
-from jbf.diagnosis.selection import needed, weights
+from jbf.diagnosis.review import needed, weights
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share, likelihood_gain, share_of_gain
 from jbf.estimation.noise import WHITE

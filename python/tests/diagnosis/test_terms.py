@@ -14,8 +14,9 @@ from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_run
 from jbf.diagnosis.terms.proposal import Model, Proposal, is_accepted, price_of_term
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
 from jbf.errors import Unfinished
+from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import approach, settle
+from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from linear_campaigns import coulomb_candidates, fit_from_truth, linear_runs, reversing_runs

@@ -9,10 +9,11 @@ from by_hand import LAW, Array, coulomb, four_runs
 from campaigns import campaign
 from coulomb_problems import HELD, STEP_S, autoregressive, coulomb_problem
 from jbf import Run
+from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_by_run
 from jbf.estimation.likelihood import likelihood_gain, noise_at
-from jbf.estimation.minimum import approach, minimum, search_peaks, settle
+from jbf.estimation.minimum import minimum, search_peaks, settle
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.robust_fit import best_weighting, huber, student

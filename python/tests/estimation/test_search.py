@@ -8,8 +8,9 @@ from by_hand import Array, coulomb, four_runs
 from campaigns import campaign as simulated
 from coulomb_problems import coulomb_problem, values_of
 from jbf import Rig, Run
+from jbf.estimation.approach import KEPT, Approach, approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import KEPT, Approach, approach, not_above_nested, settle
+from jbf.estimation.minimum import not_above_nested, settle
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.search import Visited, search

@@ -46,14 +46,14 @@ NUMERICAL = {
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
         estimation.delayed_fits: SETTLED DELAY_STEP
-        estimation.held_out: LEAST_GAIN SHORT STRAIGHT NOTHING
+        estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
         estimation.motion_error_scale: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS
         estimation.random_effects: ROUNDING
-        estimation.levenberg_marquardt: STATIONARY MAX_DAMPING
-        estimation.search: NEAR SAME ENDED
+        estimation.levenberg_marquardt: MAX_DAMPING TRUSTED
+        estimation.search: NEAR SAME ENDED NEAR_MINIMUM
         estimation.standard_errors: INSENSITIVE SINGULAR TAKES_PART
         estimation.starting_values: SHORTEST_M
     """,
@@ -62,14 +62,14 @@ NUMERICAL = {
         diagnosis.power.detection_limits: MOST_STRENGTHS MOST_ITERATIONS
         diagnosis.power.strength: CACHED_SAMPLES
         diagnosis.terms.proposal: EVALUATIONS
-        estimation.parallel_fits: MOST_AT_ONCE LONG
+        estimation.parallel_fits: MOST_AT_ONCE MAX_PARALLEL_SAMPLES
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
         estimation.delayed_fits: ROUNDS EVALUATIONS
         estimation.held_out: EVALUATIONS
         estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP
-        estimation.minimum: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED MAX_EVALUATIONS
-        estimation.minimum: FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
+        estimation.approach: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED
+        estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
         estimation.problem: SLOPES_COST
         estimation.robust_fit: ROUNDS
         estimation.search: CLIMBED
@@ -112,8 +112,8 @@ NUMERICAL = {
         estimation.jumps: MOST
     """,
     "path or starting values of searches": """
-        estimation.levenberg_marquardt: INITIAL_DAMPING LEAST_DECREASE FIRST_INCREASE
-        estimation.levenberg_marquardt: ACCEPTED TRUSTED
+        estimation.levenberg_marquardt: INITIAL_DAMPING LEAST_FACTOR FIRST_INCREASE
+        estimation.levenberg_marquardt: ACCEPTED
         estimation.search: LONGEST
         diagnosis.terms.noise_variance: START_FREEDOM
         estimation.campaign: HUM
@@ -121,7 +121,7 @@ NUMERICAL = {
         estimation.starting_values: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES RULES_OF_ANY_LAW
     """,
     "definition of an effect": """
-        estimation.starting_values: BEYOND MOST_CELL_PLAY
+        estimation.starting_values: BEYOND MAX_CELL_HYSTERESIS
     """,
 }
 """Constants outside the policy: why they decide nothing, and their names by module."""

@@ -117,7 +117,7 @@ class PresentRuns:
         problem = candidates.fitted(present).problem
         self.problem = problem.thinned
         thinned = self.problem is not problem
-        samples = self.problem.campaign.samples if thinned else self.base.samples
+        samples = self.base.samples.only(problem.searched) if thinned else self.base.samples
         solution = self.problem.solution(self.base.values, samples, self.base.noise)
         self.samples, self.noise = samples, solution.noise
         self.solution = solution

@@ -1,0 +1,223 @@
+"""Review of a model: the effects that it needs, and other effects that would fit as well.
+
+An effect is removed if it has no evidence and held-out runs do not confirm it. It is replaced by
+another effect that has more evidence. The same comparison gives the posterior weights of the
+alternatives to an effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scipy import special
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain, price_of
+from jbf.estimation.approach import many_peaks
+from jbf.estimation.likelihood import likelihood_gain, next_step_gain
+from jbf.estimation.solution import Solution
+from jbf.models.catalogue import can_be_added, can_be_removed
+
+Names = tuple[str, ...]
+
+
+def start_model(candidates: Candidates) -> Names:
+    """Select the machine terms of a drive that the runs require, estimated jointly with the law.
+
+    The fit with each term starts from the fit without it, since a search from the starting values
+    of all terms may end at a weight of zero.
+    """
+    present: Names = ()
+    for name in machine_of(candidates.campaign.rig, [n for n in TERMS if n in candidates.names]):
+        near = candidates.converge(present)
+        present = (*present, name)
+        candidates.look(present, near)
+        candidates.converge(present)
+    return still_needed(candidates, present)
+
+
+def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
+    """Remove the effects without evidence, one after the other."""
+    current = tuple(effects)
+    for name in effects:
+        if not can_be_removed(name, current):
+            continue
+        rest = tuple(e for e in current if e != name)
+        simpler = candidates.refit_from(rest, current)
+        if not needed(candidates, current, name, simpler):
+            current = rest
+    return current
+
+
+def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
+    """Whether an effect of the current model has evidence or is confirmed by held-out runs.
+
+    If another effect is missing, the residual may be so correlated that no effect has evidence. An
+    effect is needed even then if independent units confirm it, or if the held-out error is larger
+    without it.
+    """
+    full = candidates.converge(current)
+    if evidence(candidates, full, simpler) >= 0.0:
+        return True
+    if full_gain(candidates, full, simpler) <= 0.0:
+        return False
+    rest = tuple(e for e in current if e != name)
+    if units_confirm(candidates, rest, name):
+        return True
+    least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
+    return candidates.held_out_rms(rest) > least
+
+
+def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
+    """Whether an effect of at least the minimum size improves predictions of independent units."""
+    level = candidates.level
+    return candidates.confirmation(rest, name).units_confirm(level.chance, level.min_share)
+
+
+def reconsider(
+    candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
+) -> Names:
+    """Remove unnecessary effects, and replace an effect if another one has more evidence.
+
+    The review is repeated until the model no longer changes, or an earlier one recurs, since a
+    replacement may make further effects unnecessary.
+
+    Parameters
+    ----------
+    unconfirmed
+        Effects that held-out runs did not confirm in this round; not used as replacements.
+    """
+    seen = [present]
+    while (current := _reviewed_once(candidates, seen[-1], unconfirmed)) not in seen:
+        seen.append(current)
+    return current
+
+
+def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
+    """Review each effect once: keep, remove or replace it, and return the resulting effects."""
+    current = present
+    for name in present:
+        if len(current) < 2 or name not in current or not can_be_removed(name, current):
+            continue
+        rest = tuple(e for e in current if e != name)
+        candidates.search_peaks(rest)
+        simpler = candidates.refit_from(rest, current)
+        full = candidates.converge(current)
+        if not needed(candidates, current, name, simpler):
+            current = rest
+            continue
+        if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
+            continue  # inertia and weight do not imitate an effect; an offset may
+        others = [
+            other
+            for other in candidates.names
+            if not (other in current or other in unconfirmed) and can_be_added(other, rest)
+        ]
+        tie = candidates.policy.selection.tie
+        costs = swap_costs(candidates, rest, others, full, simpler, max_loss=-tie, only_best=True)
+        best = min(costs, key=costs.__getitem__, default=name)
+        if best != name and costs[best] < -tie:
+            current = tuple(best if e == name else e for e in current)
+    return current
+
+
+def swap_costs(
+    candidates: Candidates,
+    rest: tuple[str, ...],
+    others: Sequence[str],
+    current: Solution,
+    near: Solution,
+    *,
+    max_loss: float,
+    only_best: bool = False,
+) -> dict[str, float]:
+    """Loss of evidence if one effect of the current model is replaced, by name of the replacement.
+
+    A loss is an upper limit if the search was ended, because the loss could not fall below
+    `max_loss` or, with `only_best`, below that of another replacement.
+
+    Parameters
+    ----------
+    rest
+        Effects of the current model without the replaced one.
+    others
+        Names of the replacements.
+    current, near
+        Solutions of the current model and of that with the effects `rest`.
+    max_loss
+        Loss above which a replacement is not fitted further; negative if only a gain is of
+        interest.
+    only_best
+        Whether only the replacement with the smallest loss is of interest.
+    """
+    # Fewer samples are independent where the residual of `current` is correlated.
+    share = candidates.independent_share(current)
+    sets = {name: (*rest, name) for name in others}
+
+    def cost(solution: Solution) -> float:
+        """Loss of evidence if a solution replaces the current one."""
+        lost = share * likelihood_gain(current, solution)
+        return lost + price_of(candidates, solution.free) - price_of(candidates, current.free)
+
+    policy = candidates.policy
+    costs = dict.fromkeys(others, cost(near))
+    scores = dict(zip(others, candidates.score_all(list(sets.values()), near), strict=True))
+    min_score = policy.search.min_score_share * price_of(candidates, 1)
+    # The score includes the gain of the next step of `near` itself.
+    min_swap_score = policy.search.min_swap_share * likelihood_gain(current, near) + next_step_gain(
+        near
+    )
+    open_names = [name for name in others if scores[name] > max(min_score, min_swap_score)]
+    # With many peaks, a step from one peak does not predict the height of another.
+    one_peak = [name for name in open_names if not many_peaks(sets[name])]
+    candidates.look_all([sets[name] for name in one_peak], near)
+    for name in one_peak:
+        looked = candidates.look(sets[name], near)
+        solution = looked.current_solution()
+        gain_to_come = policy.search.linear_gain_factor * looked.promised
+        could_gain = gain_to_come - likelihood_gain(solution, near)
+        if cost(solution) - share * could_gain >= max_loss:
+            costs[name] = cost(solution)
+            open_names.remove(name)
+    candidates.rank_all([sets[name] for name in open_names], near)
+    ranked = {name: candidates.rank(sets[name], near) for name in open_names}
+    costs |= {name: cost(solution) for name, solution in ranked.items()}
+    for name in sorted(open_names, key=lambda name: costs[name]):
+        could_gain = policy.search.step_gain_factor * next_step_gain(ranked[name])
+        if not many_peaks(sets[name]) and costs[name] - share * could_gain >= max_loss:
+            continue
+        solution = candidates.converge(sets[name], near)
+        if solution.rms > policy.selection.max_rms_ratio * current.rms:
+            # For a wrong model, the residual with the highest likelihood may have a larger RMS.
+            costs[name] = float("inf")
+            continue
+        # An effect without evidence replaces no other: its fit may be better only because it uses
+        # fewer samples.
+        gains = evidence_on_common_samples(candidates, solution, near) > 0.0
+        costs[name] = cost(solution if gains else near)
+        if only_best:
+            max_loss = min(max_loss, costs[name])
+    return costs
+
+
+def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float]]:
+    """Posterior weights of each effect and its alternatives, at equal prior odds, by name.
+
+    The alternatives of an effect are the candidates that have at least the minimum weight if
+    compared with this effect only (Kass & Raftery 1995). The effect is first, the others follow by
+    weight. An effect without alternatives has weight one.
+    """
+    full = candidates.converge(present)
+    posterior: dict[str, dict[str, float]] = {}
+    for name in present:
+        rest = tuple(e for e in present if e != name)
+        simpler = candidates.converge(rest)
+        others = [n for n in candidates.names if n not in present and can_be_added(n, rest)]
+        tie = candidates.policy.selection.tie
+        costs = swap_costs(candidates, rest, others, full, simpler, max_loss=tie)
+        close = {other: cost for other, cost in costs.items() if cost < tie}
+        order = [name, *sorted(close, key=lambda other: close[other])]
+        share = special.softmax([-0.5 * close.get(other, 0.0) for other in order])
+        posterior[name] = dict(zip(order, share.tolist(), strict=True))
+    return posterior

@@ -31,6 +31,11 @@ GROUP = 16_000_000
 
 It limits the effort only.
 """
+BLOCK = 1_000
+"""Number of rows of a block of a QR decomposition, which then fits into the cache of a processor.
+
+It limits the effort only.
+"""
 INDEPENDENT = 1e-10
 """Relative singular value above which a direction of a design is independent.
 
@@ -95,7 +100,10 @@ def triangular(r: Array, j: Array) -> tuple[Array, Array]:
     (Golub & Van Loan, Matrix Computations, section 5.3).
     """
     rows: Array = np.column_stack([j, r])
-    factor = np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)
+    factor = rows[:0]
+    for start in range(0, len(rows), BLOCK):
+        block = np.concatenate([factor, rows[start : start + BLOCK]])
+        factor = np.asarray(np.linalg.qr(block, mode="r"), dtype=np.float64)
     return factor[:, -1], factor[:, :-1]
 
 

@@ -67,7 +67,7 @@ NUMERICAL = {
         diagnosis.terms.shifts: EVALUATIONS STEPS
         estimation.delayed_fits: ROUNDS EVALUATIONS
         estimation.held_out: EVALUATIONS
-        estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP
+        estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP BLOCK
         estimation.approach: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED
         estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
         estimation.problem: SLOPES_COST

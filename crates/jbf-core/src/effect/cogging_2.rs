@@ -36,8 +36,10 @@ impl<T: Real> SecondCogging<T> {
 }
 
 impl<T: Real> Effect<T> for SecondCogging<T> {
-    /// Radius that converts an angle to a position, m.
+    /// Radius that converts an angle to a position, m; it is constant.
     type State = T;
+
+    const HAS_MEMORY: bool = false;
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> T {
         self.0.start(motion, rig)

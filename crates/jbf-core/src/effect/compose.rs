@@ -130,6 +130,7 @@ impl<T: Real> Effect<T> for () {
 /// Pair of sets; the effects of the first act first at every stage of the signal chain.
 impl<T: Real, A: Effect<T>, B: Effect<T>> Effect<T> for (A, B) {
     const LONGEST_STEP_S: f64 = A::LONGEST_STEP_S.min(B::LONGEST_STEP_S);
+    const HAS_MEMORY: bool = A::HAS_MEMORY || B::HAS_MEMORY;
     type State = (A::State, B::State);
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
@@ -141,6 +142,7 @@ impl<T: Real, A: Effect<T>, B: Effect<T>> Effect<T> for (A, B) {
 /// Optional set of effects; `None` has no effect.
 impl<T: Real, A: Effect<T>> Effect<T> for Option<A> {
     const LONGEST_STEP_S: f64 = A::LONGEST_STEP_S;
+    const HAS_MEMORY: bool = A::HAS_MEMORY;
     type State = Option<A::State>;
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {

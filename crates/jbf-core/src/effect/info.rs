@@ -88,7 +88,7 @@ impl Info {
             parameters: &[],
             needs: &[],
             longest_step_s: E::LONGEST_STEP_S,
-            has_memory: core::mem::size_of::<E::State>() > 0,
+            has_memory: E::HAS_MEMORY,
             transmitted: false,
             further_of: None,
         }

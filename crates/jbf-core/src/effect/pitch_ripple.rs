@@ -49,8 +49,10 @@ impl<T: Real> PitchRipple<T> {
 }
 
 impl<T: Real> Effect<T> for PitchRipple<T> {
-    /// Radius that converts an angle to a position, m.
+    /// Radius that converts an angle to a position, m; it is constant.
     type State = T;
+
+    const HAS_MEMORY: bool = false;
 
     fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
         rig.radius_m

@@ -30,8 +30,11 @@ pub trait Effect<T: Real>: Copy + Debug {
     /// Longest step with which the effect is sufficiently accurate, s.
     const LONGEST_STEP_S: f64 = 0.02;
 
-    /// State of the effect in the course of a run; `()` for an effect without memory.
+    /// State of the effect in the course of a run; `()` for an effect without one.
     type State: Copy + Debug;
+
+    /// Whether the effect depends on the past; by default if it has a state.
+    const HAS_MEMORY: bool = core::mem::size_of::<Self::State>() > 0;
 
     /// Returns the state at the start of a run that begins with `motion`.
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
@@ -47,7 +50,7 @@ pub trait Effect<T: Real>: Copy + Debug {
     /// Otherwise the steps between two samples have no influence on the second sample.
     #[inline]
     fn has_memory(&self) -> bool {
-        core::mem::size_of::<Self::State>() > 0
+        Self::HAS_MEMORY
     }
 
     /// Returns true if the motion of the journal may differ from the commanded motion, as it does

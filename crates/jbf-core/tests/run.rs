@@ -187,46 +187,63 @@ fn predicted_cost_of_a_run_is_its_number_of_inner_steps() {
     }
 }
 
-/// Computes the number of steps of a law along a record, and the readings (N).
-struct Counted<'a>(Record<'a>);
+/// Computes the number of steps of a law with effects along a record, and the readings (N).
+struct Counted<'a>(Record<'a>, &'a [(&'a str, &'a [f64])]);
 
 impl Visitor<f64> for Counted<'_> {
     type Output = (f64, Vec<f64>);
 
     fn visit<L: Named<f64>>(self, law: L) -> Self::Output {
-        let chain = chain_round(law, &[]);
+        let chain = chain_round(law, self.1);
         let mut out = Vec::new();
         predict(&chain, &self.0, 0.02, |_, reading| out.push(reading));
         (inner_steps(&chain, &self.0, 0.02), out)
     }
 }
 
-/// A law without memory makes one step per sample, with the same readings as with many steps.
+/// A chain without memory makes one step per sample, with the same readings as with many steps.
+fn assert_one_step_per_sample(law: &str, effects: &[(&str, &[f64])]) {
+    let motion = Sines::two_way(std::f64::consts::TAU / 40.0);
+    let info = CATALOGUE.iter().find(|info| info.name == law);
+    let parameters = info.expect("known").parameters;
+    let values: Vec<f64> = parameters.iter().map(|p| p.starts[0]).collect();
+    let along = |columns: &Columns| {
+        let visitor = Counted(columns.record(), effects);
+        with_law(law, None, None, &values, Clock::Journal, visitor).expect("sound")
+    };
+    let (steps, slow) = along(&Columns::of(&motion, 2.0, 101));
+    let (_, dense) = along(&Columns::of(&motion, 0.02, 10_001));
+    assert_eq!(steps, 101.0, "{law} {effects:?}");
+    for (k, reading) in slow.iter().enumerate().skip(1) {
+        let other = dense[100 * k];
+        assert!(
+            (reading - other).abs() < 1e-9 * other.abs().max(1.0),
+            "{law} {effects:?} {k}"
+        );
+    }
+}
+
 #[test]
 fn laws_without_memory_take_one_step_per_sample() {
-    let motion = Sines::two_way(std::f64::consts::TAU / 40.0);
     for name in ["coulomb", "stribeck"] {
-        let info = CATALOGUE.iter().find(|law| law.name == name);
-        let values: Vec<f64> = info
-            .expect("known")
-            .parameters
-            .iter()
-            .map(|p| p.starts[0])
-            .collect();
-        let along = |columns: &Columns| {
-            let visitor = Counted(columns.record());
-            with_law(name, None, None, &values, Clock::Journal, visitor).expect("sound")
-        };
-        let (steps, slow) = along(&Columns::of(&motion, 2.0, 101));
-        let (_, dense) = along(&Columns::of(&motion, 0.02, 10_001));
-        assert_eq!(steps, 101.0, "{name}");
-        for (k, reading) in slow.iter().enumerate().skip(1) {
-            let other = dense[100 * k];
-            assert!(
-                (reading - other).abs() < 1e-9 * other.abs().max(1.0),
-                "{name} {k}"
-            );
-        }
+        assert_one_step_per_sample(name, &[]);
+    }
+}
+
+#[test]
+fn effects_of_the_position_take_one_step_per_sample() {
+    let effects: [(&str, &[f64]); 5] = [
+        ("cogging", &[0.5, 0.01, 0.3]),
+        ("cogging_2", &[0.5, 0.02, 0.3]),
+        ("pitch_ripple", &[0.2, 0.01, 0.3]),
+        ("pitch_ripple_2", &[0.2, 0.02, 0.3]),
+        (
+            "stroke_dependence",
+            &[0.1, 0.05, 0.02, 0.03, 0.01, 0.02, 0.0, 0.05],
+        ),
+    ];
+    for effect in effects {
+        assert_one_step_per_sample("coulomb", &[effect]);
     }
 }
 

@@ -2,7 +2,7 @@
 
 An effect is removed if it has no evidence and held-out runs do not confirm it. It is replaced by
 another effect that has more evidence. The same comparison gives the posterior weights of the
-alternatives to an effect.
+alternatives to an effect. `start_model` reviews the machine terms of a drive.
 """
 
 from __future__ import annotations
@@ -165,9 +165,8 @@ def swap_costs(
     scores = dict(zip(others, candidates.score_all(list(sets.values()), near), strict=True))
     min_score = policy.search.min_score_share * price_of(candidates, 1)
     # The score includes the gain of the next step of `near` itself.
-    min_swap_score = policy.search.min_swap_share * likelihood_gain(current, near) + next_step_gain(
-        near
-    )
+    min_swap_score = policy.search.min_swap_share * likelihood_gain(current, near)
+    min_swap_score += next_step_gain(near)
     open_names = [name for name in others if scores[name] > max(min_score, min_swap_score)]
     # With many peaks, a step from one peak does not predict the height of another.
     one_peak = [name for name in open_names if not many_peaks(sets[name])]

@@ -148,8 +148,8 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     if leader is None:
         tried = [r for r in ranked if r.effect not in unconfirmed]
         leader = _by_units(candidates, present, tried)
-    added = [_added_by_units(candidates, present, t) if t.effect == leader else t for t in trials]
-    ordered = tuple(sorted(added, key=lambda t: -t.evidence))
+    trials = [_added_by_units(candidates, present, t) if t.effect == leader else t for t in trials]
+    ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
     return Round(ordered, leader, frozenset(unconfirmed))
 
 
@@ -173,7 +173,7 @@ def _by_units(candidates: Candidates, present: Names, ranked: Sequence[Ranked]) 
 
 
 def _added_by_units(candidates: Candidates, present: Names, trial: Trial) -> Trial:
-    """Mark the trial of the selected effect as added, if by units with these as the reason."""
+    """Mark the trial of the leader as added; without evidence, the units are the reason."""
     if trial.outcome == "added":
         return trial
     confirmation = candidates.confirmation(present, trial.effect)

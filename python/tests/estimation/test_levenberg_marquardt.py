@@ -110,3 +110,29 @@ def test_step_is_limited_and_values_that_diverge_are_rejected() -> None:
     end = minimise(function, np.zeros(1), bounds([-9.0], [9.0]), np.array([3.0]), 40, 1e-9)
     assert max(np.abs(np.diff(visited[:2]))) == pytest.approx(3.0)
     assert end.x[0] == pytest.approx(2.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(("share", "evaluations"), [(0.1, 1), (100.0, 3)])
+def test_search_ends_if_the_predicted_decrease_is_below_the_tolerance(
+    share: float, evaluations: int
+) -> None:
+    """Linear problem, started where a step decreases the sum of squares by a known amount."""
+    function, design, data = linear(7)
+    wanted, (least,), *_ = np.linalg.lstsq(design, data, rcond=None)
+    tolerance = 1e-3
+    direction = np.array([1.0, -2.0, 0.5, 1.0])
+    away = np.sqrt(share * tolerance * least / float(np.sum((design @ direction) ** 2)))
+    counted: list[Array] = []
+
+    def evaluate(x: Array) -> tuple[Array, Array]:
+        counted.append(x)
+        return function(x)
+
+    box = bounds([-1e3] * 4, [1e3] * 4)
+    start = wanted + away * direction
+    end = minimise(evaluate, start, box, np.full(4, np.inf), 30, tolerance)
+    assert end.converged
+    assert len(counted) <= evaluations
+    reached = float(np.sum(function(end.x)[0] ** 2))
+    assert reached <= least * (1.0 + tolerance)
+    assert (len(counted) == 1) == (share < 1.0)

@@ -13,7 +13,7 @@ from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_by_run
 from jbf.estimation.likelihood import likelihood_gain, noise_at
-from jbf.estimation.minimum import minimum, search_peaks, settle
+from jbf.estimation.minimum import minimum, polish, search_peaks, settle
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.robust_fit import best_weighting, huber, student
@@ -211,3 +211,17 @@ def test_robust_weights_reduce_the_bias_of_the_slope_by_few_outliers() -> None:
     assert abs(plain.values[2] / slope - 1.0) > 0.1
     found = best_weighting(problem, plain)
     assert abs(found.values[2] - slope) < 0.3 * abs(plain.values[2] - slope)
+
+
+def test_polished_fit_has_the_least_squares_estimates() -> None:
+    """A solution within a gain of 0.5 of the minimum is continued to the estimates."""
+    problem, exact = fitted(runs_with(lambda i, run: np.zeros(len(run))))
+    values = exact.values.copy()
+    values[2] *= 1.0005
+    near = problem.solution(values, exact.samples, exact.noise)
+    gain = likelihood_gain(exact, near)
+    assert 0.01 < gain < 0.5
+    found = polish(problem, near)
+    wanted, _ = regression(problem, None if exact.noise.white else exact.noise)
+    assert abs(likelihood_gain(exact, found)) < 0.01 * gain
+    assert found.values[2] == pytest.approx(wanted[1], rel=1e-4)

@@ -55,7 +55,7 @@ class Scale:
 
 
 class Hidden(Protocol):
-    """Interface of a hidden effect, evaluated at the start of each piece of the motion."""
+    """Interface of a hidden effect, evaluated in the middle of each piece of the motion."""
 
     name: ClassVar[str]
 

@@ -2,14 +2,14 @@
 
 Between two instants (ticks) of the controller the torque is constant, so the viscous motion is an
 exponential in closed form. Reversals, stops and breakaways are events. Gravity and hidden effects
-are evaluated at the start of each piece, and a piece is at most one tick long.
+are evaluated in the middle of each piece, which is at most one tick long.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -93,36 +93,35 @@ def run(
 
     `random` draws the quantities that vary from run to run.
     """
-    m, d, hidden = plant.inertia, plant.viscous, plant.hidden
+    m = plant.inertia
     random = np.random.default_rng(0) if random is None else random
     at = Course(0.0, start, 0.0, 0, random.uniform(0.0, 2.0 * math.pi), [])
     at.scatter = random.normal(size=64).tolist()
-    lost, direction = hidden.lost_share(), 0.0
+    direction = 0.0
     rows: list[tuple[float, float, float, float, float, float]] = []
     for tick in range(ticks):
         u = control(tick, at.position, at.velocity)
         remaining_s = tick_s
         while remaining_s > 1e-12:
             t, x, v = at.time, at.position, at.velocity
-            weight = plant.gravity * (math.sin(x) if plant.swings else 1.0)
-            push, factor = hidden.push(at), hidden.factor(at)
-            drive = u - weight - push
+            held, drive = _held(plant, at), u - _push(plant, at)
             sign = math.copysign(1.0, drive if v == 0.0 else v)
             if sign != direction and (v != 0.0 or direction == 0.0):
                 at.strokes, direction = at.strokes + (direction != 0.0), sign
-            f = factor * (plant.coulomb + hidden.level(at))
-            if v == 0.0 and abs(drive) <= f + lost * abs(weight):
+            if v == 0.0 and abs(drive) <= held:
                 rows.append((t, x, 0.0, 0.0, 0.0, u))
                 at.time, remaining_s = t + remaining_s, 0.0
                 continue
-            # All friction except the part proportional to speed, which is integrated in closed
-            # form.
-            extra = factor * (hidden.viscous_factor(at) * (d * v + hidden.drag(at)) - d * v)
-            slope = factor * d
-            net = u - push - sign * f - extra
-            # Losses are a share of the transmitted force: that of the weight and of the mass.
-            through = 1.0 + sign * math.copysign(lost, net - slope * v)
-            force, damping = net / through - weight, slope / through
+            force, damping = _sliding(plant, at, u, sign)
+            half_s, a0 = 0.5 * remaining_s, (force - damping * v) / m
+            middle = replace(
+                at,
+                time=t + half_s,
+                position=x + half_s * (v + 0.5 * half_s * a0),
+                velocity=v + half_s * a0,
+            )
+            if sign * middle.velocity > 0.0:
+                force, damping = _sliding(plant, middle, u, sign)
             a0 = (force - damping * v) / m
             last = force / damping  # the velocity approached
             h = remaining_s
@@ -145,3 +144,38 @@ def run(
         columns[4],
         columns[5],
     )
+
+
+def _weight(plant: Plant, at: Course) -> float:
+    """Force of the weight, N m or N."""
+    return plant.gravity * (math.sin(at.position) if plant.swings else 1.0)
+
+
+def _push(plant: Plant, at: Course) -> float:
+    """Force that the drive must overcome in both directions, N m or N."""
+    return _weight(plant, at) + plant.hidden.push(at)
+
+
+def _coulomb(plant: Plant, at: Course) -> float:
+    """Friction at the present speed without its viscous part, N m or N."""
+    return plant.hidden.factor(at) * (plant.coulomb + plant.hidden.level(at))
+
+
+def _held(plant: Plant, at: Course) -> float:
+    """Largest force, N m or N, that friction holds at rest."""
+    return _coulomb(plant, at) + plant.hidden.lost_share() * abs(_weight(plant, at))
+
+
+def _sliding(plant: Plant, at: Course, u: float, sign: float) -> tuple[float, float]:
+    """Force without viscous friction, and viscous slope, of the accelerated mass.
+
+    All friction except the part proportional to speed is contained in the force.
+    """
+    hidden, d, v = plant.hidden, plant.viscous, at.velocity
+    factor = hidden.factor(at)
+    extra = factor * (hidden.viscous_factor(at) * (d * v + hidden.drag(at)) - d * v)
+    slope = factor * d
+    net = u - hidden.push(at) - sign * _coulomb(plant, at) - extra
+    # Losses are a share of the transmitted force: that of the weight and of the mass.
+    through = 1.0 + sign * math.copysign(hidden.lost_share(), net - slope * v)
+    return net / through - _weight(plant, at), slope / through

@@ -9,7 +9,9 @@ import servosim
 from servosim.campaign import draw
 from servosim.hidden import (
     NOTHING,
+    Cogging,
     Hidden,
+    PitchRipple,
     StribeckExcess,
     Together,
     TorqueProportional,
@@ -49,6 +51,31 @@ def test_viscous_drive_approaches_its_speed_exponentially() -> None:
     _, velocity, acceleration, _ = motion.at(t)
     np.testing.assert_allclose(velocity, 1.0 - np.exp(-4.0 * t), atol=1e-5)
     np.testing.assert_allclose(acceleration, 4.0 * np.exp(-4.0 * t), atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        Cogging(0.3, 0.2, 0.4),
+        PitchRipple(0.3, 0.2, 0.4),
+        StribeckExcess(0.5, 0.5, 1.5),
+        ViscousThinning(0.5),
+        TorqueProportional(0.2),
+    ],
+    ids=lambda effect: effect.name,
+)
+def test_error_of_the_motion_decreases_with_the_square_of_the_step(hidden: Hidden) -> None:
+    """The pendulum slides in one direction, so no event limits the order."""
+    plant = Plant(0.5, 0.8, 0.4, 0.6, True, Together((hidden,)))
+
+    def positions(steps_per_tick: int) -> Any:
+        step_s = 4e-3 / steps_per_tick
+        motion = run(plant, lambda tick, x, v: 4.0, step_s, 250 * steps_per_tick, 0.2)
+        return motion.at(np.linspace(0.1, 0.99, 50))[0]
+
+    exact = positions(64)
+    coarse, fine = (np.max(np.abs(positions(n) - exact)) for n in (4, 8))
+    assert coarse / fine == pytest.approx(4.0, rel=0.2)
 
 
 def moving_samples(campaign: servosim.Campaign) -> tuple[Any, Any]:

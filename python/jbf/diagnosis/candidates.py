@@ -200,8 +200,7 @@ class Candidates:
         """Acceptance threshold in white noise, for the residual of the model with these effects."""
         base = self.converge(present)
         samples = self.independent_share(base) * base.samples.count
-        least = self.policy.least_effect_share(self.campaign.motion_share)
-        return Level.in_white_noise(self.policy, len(self.names), samples, base.rms, least)
+        return Level.in_white_noise(self.policy, len(self.names), samples, base.rms)
 
     # ---- fits -------------------------------------------------------------------------------
 

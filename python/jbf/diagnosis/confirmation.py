@@ -207,10 +207,10 @@ def held_out_runs_confirm(
 ) -> bool:
     """Whether held-out runs confirm the gain of a candidate in the fit.
 
-    Weak evidence must be confirmed by the held-out predictive density. The errors alone are not
-    informative where the other runs cannot determine a parameter, for example where one run
-    dominates the estimate of the parameters of the law. Where the evidence is strong, any gain in
-    mean square suffices, or a better prediction of most of the runs. A candidate that increases the
+    The held-out predictive density confirms any evidence. The errors alone are not informative
+    where the other runs cannot determine a parameter, for example where one run dominates the
+    estimate of the parameters of the law. Where the evidence is strong, any gain in mean square
+    suffices as well, or a better prediction of most of the runs. A candidate that increases the
     held-out RMS by more than `policy.held_out.max_rms_ratio` is never confirmed.
 
     Parameters
@@ -228,6 +228,7 @@ def held_out_runs_confirm(
     """
     if times > policy.held_out.max_rms_ratio:
         return False
-    if evidence <= policy.selection.weak_evidence:
-        return density > policy.held_out.min_gain_share
-    return gained_share > 0.0 or better >= policy.held_out.min_better_share
+    if density > policy.held_out.min_gain_share:
+        return True
+    strong = evidence > policy.selection.weak_evidence
+    return strong and (gained_share > 0.0 or better >= policy.held_out.min_better_share)

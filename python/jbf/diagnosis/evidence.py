@@ -93,8 +93,7 @@ def _describes_motion_errors(candidates: Candidates, richer: Solution, simpler: 
         return False
     samples = common_samples(richer.samples, simpler.samples)
     explained = samples.rms(simpler.residuals) ** 2 - samples.rms(richer.residuals) ** 2
-    share = candidates.policy.least_share(candidates.campaign.motion_share)
-    return bool(explained < share * samples.rms(simpler.residuals) ** 2)
+    return bool(explained < candidates.campaign.motion_share * samples.rms(simpler.residuals) ** 2)
 
 
 def _differ_by_less_than_quantisation(

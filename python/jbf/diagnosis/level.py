@@ -86,7 +86,6 @@ class Level:
         candidates: int,
         samples: float,
         noise_rms: float,
-        least_share: float = 0.0,
     ) -> Level:
         """Return the threshold in white noise; the candidates share the false-alarm rate.
 
@@ -102,12 +101,10 @@ class Level:
             Number of independent samples.
         noise_rms
             RMS of the residual, N.
-        least_share
-            Minimum share of the mean square that an effect must explain.
         """
         least = max(policy.min_effect_share, policy.min_effect / max(noise_rms, 1e-300))
         chance = policy.false_alarm_rate / max(candidates, 1)
-        share = max(least**2, least_share)
+        share = least**2
         return cls(
             policy.false_alarm_rate,
             candidates,

@@ -262,13 +262,6 @@ class Motion:
         "1.0 to 1.2 for friction, at most 0.6 or above 1.7 for smoothing in simulated servo drives "
         "(seeds 4850 to 4877)",
     )
-    max_effect_share: float = documented(
-        0.03,
-        "share of the mean square that all other effects must explain where the errors of the "
-        "motion have a larger share of the variance",
-        "twice the largest share that such an effect explained in simulated servo drives without "
-        "hidden effects (seeds 4007 to 4036)",
-    )
     min_noise_ratio: float = documented(
         1.1,
         "minimum ratio by which the noise, or the RMS of the residuals, must decrease "

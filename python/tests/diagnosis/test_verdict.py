@@ -50,11 +50,12 @@ def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None
 @pytest.mark.parametrize(
     ("evidence", "gains", "rms_ratio", "confirmed"),
     [
-        # Weak evidence: the predictive density must contain more than half of the gain.
+        # Any evidence: more than half of the gain in the predictive density suffices.
         (DEFAULT.selection.weak_evidence, (0.5, 1.0, 1.0), 1.0, False),
         (DEFAULT.selection.weak_evidence, (0.51, -1.0, 0.0), 1.0, True),
-        (DEFAULT.selection.weak_evidence + 0.1, (0.51, -1.0, 0.0), 1.0, False),
-        # Strong evidence: any gain in mean square, or a gain in two of three runs.
+        (STRONG, (0.51, -1.0, 0.0), 1.0, True),
+        (STRONG, (0.5, 0.0, 0.0), 1.0, False),
+        # Strong evidence: so does any gain in mean square, or a gain in two of three runs.
         (STRONG, (0.0, 1e-9, 0.0), 1.0, True),
         (STRONG, (0.0, 0.0, 0.65), 1.0, False),
         (STRONG, (0.0, 0.0, DEFAULT.held_out.min_better_share), 1.0, True),
@@ -69,7 +70,7 @@ def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None
         ),
     ],
 )
-def test_weak_evidence_requires_a_larger_held_out_gain_than_strong_evidence(
+def test_strong_evidence_needs_less_held_out_gain_than_weak_evidence(
     evidence: float, gains: tuple[float, float, float], rms_ratio: float, confirmed: bool
 ) -> None:
     """Gains in predictive density and in mean square, and the share of improved runs."""

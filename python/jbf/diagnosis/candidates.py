@@ -123,13 +123,6 @@ class Candidates:
             self._fitted[key] = Fitted(problem)
         return self._fitted[key]
 
-    def values_of(self, effects: Iterable[str]) -> dict[str, float] | None:
-        """Fitted parameter values by name for a set of effects; None if it has not been ranked."""
-        fitted = self._fitted.get(frozenset(effects))
-        if fitted is None or fitted.state in ("posed", "looked"):
-            return None
-        return fitted.named_values()
-
     # ---- score tests ------------------------------------------------------------------------
 
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
@@ -178,6 +171,10 @@ class Candidates:
         if self._level is None:
             self._level = self._white_noise_level(())
         return self._level
+
+    def price(self, parameters: int) -> float:
+        """Acceptance threshold for the gain of a model with this number of added parameters."""
+        return self.level.price(parameters, self.campaign.samples.count)
 
     def calibrate(self, present: Sequence[str]) -> None:
         """Calibrate `level`, the acceptance threshold, by the residual of the present model."""
@@ -236,10 +233,10 @@ class Candidates:
         """Create the unfinished search for the fit of these effects, with its starting values."""
         seeds: list[Mapping[str, float]] = [{}]
         many = near is not None and many_peaks(near.effects)
-        earlier_values = None if self.earlier is None else self.earlier.values_of(effects)
-        if earlier_values is not None:
+        earlier = None if self.earlier is None else self.earlier._fitted.get(frozenset(effects))
+        if earlier is not None and earlier.state in ("ranked", "converged"):
             # Start from the solution before the sample weights changed.
-            seeds = [earlier_values]
+            seeds = [earlier.named_values()]
         elif near is not None:
             near_values = self.fitted(near.effects).problem.values_by_name(near.values)
             # Law parameters that compensated for the missing effect are poor starting values; with
@@ -258,10 +255,13 @@ class Candidates:
         """Fit several sets of effects by a few steps (`look`) from a smaller model's solution."""
         self._each("looking at", lambda effects: self.look(effects, near), sets, near)
 
-    def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> list[float]:
-        """Return the gain of each set of effects by its score test (`score_test`)."""
-        self._each("testing", lambda effects: self.score_test(effects, near), sets, near)
-        return [self.score_test(effects, near) for effects in sets]
+    def score_all(
+        self, effects: Sequence[str], names: Iterable[str], near: Solution
+    ) -> dict[str, float]:
+        """Gain of each effect in `names` added to `effects`, by its score test (`score_test`)."""
+        sets = {name: (*effects, name) for name in names}
+        self._each("testing", lambda each: self.score_test(each, near), [*sets.values()], near)
+        return {name: self.score_test(each, near) for name, each in sets.items()}
 
     def _each(
         self,
@@ -390,7 +390,7 @@ class Candidates:
     def _required_square(self, near: Solution) -> float:
         """Sum of squares below which a model with more effects has a relevant gain, N^2."""
         samples, share = self.campaign.samples, self.policy.search.min_score_share
-        shown = share * self.level.price(1, samples.count) / samples.count
+        shown = share * self.price(1) / samples.count
         return samples.square(near.residuals) * float(np.exp(-shown))
 
     def tell(self, message: str, done: int, total: int) -> None:

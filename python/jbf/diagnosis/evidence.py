@@ -22,11 +22,6 @@ from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 
-def price_of(candidates: Candidates, parameters: int) -> float:
-    """Acceptance threshold for the gain of a model with this number of additional parameters."""
-    return candidates.level.price(parameters, candidates.campaign.samples.count)
-
-
 def evidence(
     candidates: Candidates, richer: Solution, simpler: Solution, *, count_local_gain: bool = False
 ) -> float:
@@ -51,7 +46,7 @@ def evidence(
         gain *= share if count_local_gain else share_of_gain(richer, simpler, share)
     if _adds_idle_effect(candidates, richer, simpler):
         gain = min(gain, 0.0)
-    price = price_of(candidates, richer.free - simpler.free)
+    price = candidates.price(richer.free - simpler.free)
     if gain > price:
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
@@ -77,7 +72,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     samples = common_samples(richer.samples, simpler.samples)
     before, after = (samples.cost(s.residuals, WHITE) for s in (simpler, richer))
     gain = min(before - after, robust_gain(richer, simpler))
-    return gain - price_of(candidates, richer.free - simpler.free)
+    return gain - candidates.price(richer.free - simpler.free)
 
 
 def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -117,12 +116,12 @@ class Level:
     @property
     def critical(self) -> float:
         """Gain that a parameter without effect exceeds with probability `chance`."""
-        return _gain_from_noise(self.chance)
+        return float(special.chdtri(1, self.chance))
 
     @property
     def white_noise_threshold(self) -> float:
         """Gain that one parameter exceeds in white noise at the Bonferroni-corrected level."""
-        return _gain_from_noise(self.false_alarm_rate / max(self.candidates, 1))
+        return float(special.chdtri(1, self.false_alarm_rate / max(self.candidates, 1)))
 
     @property
     def significant(self) -> float:
@@ -148,12 +147,6 @@ class Level:
             "critical": self.critical,
             "white_noise_threshold": self.white_noise_threshold,
         }
-
-
-@cache
-def _gain_from_noise(chance: float) -> float:
-    """Gain in twice the log likelihood that one parameter exceeds by chance."""
-    return float(special.chdtri(1, chance))
 
 
 _stacked_rows: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()

@@ -48,7 +48,7 @@ from jbf.diagnosis.which_law import (
 )
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Fit, finish
+from jbf.estimation.fit import finish
 from jbf.estimation.posterior_motions import corrected_for_delay
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
@@ -312,7 +312,7 @@ def _with_law(
     all_weights: dict[str, dict[str, float]] = optional.of(
         ALTERNATIVES, lambda: weights(candidates, named), {}
     )
-    if missing and selected.finished and ALTERNATIVES in optional.omitted:
+    if missing and not selected.not_tried and ALTERNATIVES in optional.omitted:
         where = f"{optional.omitted[ALTERNATIVES]}; alternatives to the effects were not tested"
         remains = (*remains, Remainder(SEARCH, where, 0.0))
     weighted = (*missing, OFFSET)
@@ -364,7 +364,7 @@ def _with_law(
         confounders=tuple(name for name in doubted if name in kept),
         simpler_law=simpler,
         power=strengths,
-        limitations=limitations(recorded, _values(fit), policy),
+        limitations=limitations(recorded, fit.params, policy),
     )
 
 
@@ -372,11 +372,6 @@ def _power(candidates: Candidates, present: Names) -> tuple[tuple[Power, ...], N
     """Power for each effect, and the effects that are not detectable in these runs."""
     strengths = power(candidates, present)
     return strengths, undetectable_effects(candidates, present, strengths)
-
-
-def _values(fit: Fit) -> dict[str, float]:
-    """Parameter values of a fit, by name."""
-    return {name: parameter.value for name, parameter in fit.parameters.items()}
 
 
 def _before(candidates: Candidates) -> Comparison:

@@ -13,7 +13,7 @@ from scipy import special
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
-from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain, price_of
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.estimation.approach import many_peaks
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
@@ -158,12 +158,12 @@ def swap_costs(
     def cost(solution: Solution) -> float:
         """Loss of evidence if a solution replaces the current one."""
         lost = share * likelihood_gain(current, solution)
-        return lost + price_of(candidates, solution.free) - price_of(candidates, current.free)
+        return lost + candidates.price(solution.free) - candidates.price(current.free)
 
     policy = candidates.policy
     costs = dict.fromkeys(others, cost(near))
-    scores = dict(zip(others, candidates.score_all(list(sets.values()), near), strict=True))
-    min_score = policy.search.min_score_share * price_of(candidates, 1)
+    scores = candidates.score_all(rest, others, near)
+    min_score = policy.search.min_score_share * candidates.price(1)
     # The score includes the gain of the next step of `near` itself.
     min_swap_score = policy.search.min_swap_share * likelihood_gain(current, near)
     min_swap_score += next_step_gain(near)

@@ -51,11 +51,6 @@ class Selected:
     remainders: tuple[Remainder, ...] = ()
     not_tried: dict[str, str] = field(default_factory=dict)
 
-    @property
-    def finished(self) -> bool:
-        """Whether the selection ended because no further effect is accepted."""
-        return not self.not_tried
-
 
 FURTHER = "further effects and recording artefacts"
 """Name of what a selection omitted where the tests of no single effect are missing."""
@@ -272,9 +267,7 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
     """Candidate effects with the largest score statistics relative to the present model."""
     near = candidates.converge(present)
     names = candidates.addable(present)
-    scores = dict(
-        zip(names, candidates.score_all([(*present, n) for n in names], near), strict=True)
-    )
+    scores = candidates.score_all(present, names, near)
     finite = [name for name in names if np.isfinite(scores[name])]
     return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.search.paired]
 
@@ -323,13 +316,13 @@ def _unconfirmed_candidate(candidates: Candidates, present: Names) -> tuple[Rema
     Samples next to friction jumps are excluded, since a run-specific clock error of less than a
     sample can affect them.
     """
-    extensions = {
-        name: candidates.fitted((*present, name))
+    policy = candidates.policy
+    fitted = {
+        name: extension
         for name in candidates.names
         if name not in present
+        and (extension := candidates.fitted((*present, name))).solution is not None
     }
-    policy = candidates.policy
-    fitted = {name: f for name, f in extensions.items() if f.solution is not None}
     base = candidates.converge(present)
     # Exclude the samples next to jumps, as in the fit of a delay.
     delay = fitted.get(DELAY)

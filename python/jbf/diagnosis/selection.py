@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain, price_of
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.review import units_confirm
@@ -108,9 +108,9 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         outcome: Outcome
         outcome = "no gain"
         reason = SMOOTH if rms < LESS * bare else CHANCE
-        if gain > candidates.level.critical - price_of(candidates, 1):
+        if gain > candidates.level.critical - candidates.price(1):
             reason = SLIGHT
-        if gain <= 0.0 and gain > candidates.level.significant - price_of(candidates, 1):
+        if gain <= 0.0 and gain > candidates.level.significant - candidates.price(1):
             outcome = "negligible"
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
         if np.isfinite(candidate.limit):
@@ -206,11 +206,10 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     """
     policy = candidates.policy
     rivals = candidates.addable(present)
-    gains = candidates.score_all([(*present, n) for n in rivals], base)
-    scores = dict(zip(rivals, gains, strict=True))
+    scores = candidates.score_all(present, rivals, base)
     candidates.calibrate(present)
     share = candidates.independent_share(base)
-    least = policy.search.min_score_share * price_of(candidates, 1)
+    least = policy.search.min_score_share * candidates.price(1)
     # In a correlated residual a sample is less informative, and any candidate has a small gain.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     approximate = dict.fromkeys(rivals, -np.inf)
@@ -241,7 +240,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
         # At the null an effect does not change the model, which gives a lower bound of the
         # evidence.
         more = len(candidates.fitted(effects).problem.open) - base.free
-        gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
+        gain = max(evidence(candidates, solution, base), -candidates.price(more))
         ranked.append(Ranked(gain, name, solution, limits.get(name, np.inf)))
     ranked.sort(key=lambda r: -r.evidence)
     # Search other maxima of the likelihood for competitive candidates.

@@ -17,7 +17,6 @@ import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.drive import machine_of
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.residual_structure.constancy import disagreement
@@ -97,7 +96,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
         test = disagreement(problem, full, name, policy)
         beyond = test.gain - test.degrees if test.beyond_chance(policy) else None
         explained = 1.0 - (full.rms / rest.rms) ** 2
-        weak = gain - price_of(candidates, full.free - rest.free) <= policy.selection.weak_evidence
+        weak = gain - candidates.price(full.free - rest.free) <= policy.selection.weak_evidence
         if (weak and explained < largest) or not name_is_supported(decrease, beyond, policy):
             doubted.append(name)
     return tuple(doubted)

@@ -7,7 +7,7 @@ import pytest
 from by_hand import Array, assert_recovered, coulomb, four_runs
 from jbf import Diagnosis, Rig, Run
 from jbf.diagnosis import Trial
-from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, price_of
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples
 from jbf.diagnosis.level import score_test
 from jbf.diagnosis.review import needed, weights
 from jbf.estimation.campaign import Campaign
@@ -132,13 +132,13 @@ def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -
     """A mass in one run only: the variance of its score is far above that in white noise."""
     candidates = coulomb_candidates(linear_runs("mass in one run"))
     simple, rich = candidates.converge(()), candidates.converge(("inertia",))
-    gain, price = likelihood_gain(rich, simple), price_of(candidates, 1)
+    gain, price = likelihood_gain(rich, simple), candidates.price(1)
     found = evidence(candidates, rich, simple)
     anywhere = evidence(candidates, rich, simple, count_local_gain=True)
     assert found == pytest.approx(gain * share_of_gain(rich, simple, effective_share(rich)) - price)
     assert anywhere == pytest.approx(gain * effective_share(rich) - price)
     assert found < 0.0 < anywhere <= gain - price
-    assert evidence(candidates, simple, rich) == pytest.approx(-gain - price_of(candidates, -1))
+    assert evidence(candidates, simple, rich) == pytest.approx(-gain - candidates.price(-1))
 
 
 def test_residual_of_a_missing_candidate_does_not_reduce_the_share_of_independent_samples() -> None:
@@ -155,7 +155,7 @@ def test_residual_of_a_missing_candidate_does_not_reduce_the_share_of_independen
         candidates = coulomb_candidates(runs)
         base = candidates.converge(())
         assert candidates.independent_share(base) < 0.1
-        candidates.score_all([(name,) for name in candidates.names], base)
+        candidates.score_all((), candidates.names, base)
         candidates.calibrate(())
         assert least <= candidates.independent_share(base) <= most
 
@@ -224,7 +224,7 @@ def test_gain_below_the_quantisation_error_is_not_evidence(step_n: float, counts
         assert found > 0.0
     else:
         assert likelihood_gain(rich, simple) > 0.0
-        assert found == pytest.approx(-price_of(candidates, 1))
+        assert found == pytest.approx(-candidates.price(1))
 
 
 def test_fit_far_from_its_minimum_is_improved_from_a_richer_model() -> None:

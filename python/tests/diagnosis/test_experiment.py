@@ -12,7 +12,6 @@ from golden import golden
 from jbf import Limits, Rig, effects
 from jbf.diagnosis import Experiment, Policy
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.experiment_design.excitations import (
     MOST_SAMPLES,
     Excitation,
@@ -254,7 +253,7 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
     limits, step_s = filled_limits(tried, LIMITS)
     base = rival(tried)
     models = [m for name in names if (m := strength_of(tried, (), name)) is not None]
-    prices = [price_of(tried, len(m.problem.open) - base.solution.free) for m in models]
+    prices = [tried.price(len(m.problem.open) - base.solution.free) for m in models]
     ranks = []
     for excitation, run, motion in motions(tried, limits, step_s):
         changed = [m.problem.chain.predict(m.values(1.0), [motion])[0] for m in models]

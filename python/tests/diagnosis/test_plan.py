@@ -10,7 +10,6 @@ import pytest
 from by_hand import LAW, Array, coulomb
 from jbf import InputError, Limits, Model, Rig, Run, fit, plan, planned_power
 from jbf.cli import main
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.experiment_design.excitations import excitations, run_from_motion
 from jbf.diagnosis.experiment_design.plan import LEAST_RUNS, MOST_RUNS, Plan
 from jbf.diagnosis.policy import DEFAULT
@@ -74,7 +73,7 @@ def test_each_run_of_a_plan_is_the_best_addition_to_the_runs_before_it() -> None
     tried = as_recorded(MODEL, [run for _, run in motions[::3]], NOISE_N, DEFAULT)
     models = [m for name in tried.names if (m := strength_of(tried, (), name)) is not None]
     laws = len(tried.fitted(()).problem.open)
-    prices = np.array([price_of(tried, max(len(m.problem.open) - laws, 1)) for m in models])
+    prices = np.array([tried.price(max(len(m.problem.open) - laws, 1)) for m in models])
     step = 1e-4
     steps = [VALUES | {name: (1.0 + step) * value} for name, value in VALUES.items()]
     informations = []

@@ -9,7 +9,7 @@ from by_hand import Array, Friction, coulomb, one_way
 from golden import golden
 from jbf import Run
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, price_of
+from jbf.diagnosis.evidence import evidence
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power.detection_limits import non_centrality, power
 from jbf.diagnosis.power.distinction import (
@@ -60,7 +60,7 @@ def residual_norm(change: Array, *others: Array) -> float:
 
 @cache
 def price() -> float:
-    return price_of(coulomb_candidates(runs()), 1)
+    return coulomb_candidates(runs()).price(1)
 
 
 @pytest.mark.parametrize("chance", [0.8, 0.95])
@@ -313,7 +313,7 @@ def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None
 def test_delay_and_lag_are_confounded_if_reversals_are_uncertain(velocity_noise: float) -> None:
     """With an exact velocity the two effects differ only within a sample of 20 ms."""
     names = ["time_delay", "sensor_lag"]
-    found: dict[str, Any] = {p.effect: p for p in power(swings(velocity_noise), (), names)}
+    found: dict[str, Any] = {p.effect: p for p in power(swings(velocity_noise), ())}
     for name, other in (names, names[::-1]):
         own = found[name]
         if velocity_noise:

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.experiment_design.excitations import (
     MOST_SAMPLES,
     Excitation,
@@ -272,7 +271,7 @@ def propose_detection_run(
     base = Rival(candidates.fitted(present))
     richer = {name: at_usual_strength(candidates, present, name) for name in hidden}
     prices = {
-        name: price_of(candidates, len(problem.open) - base.solution.free)
+        name: candidates.price(len(problem.open) - base.solution.free)
         for name, (problem, _) in richer.items()
     }
     settings = candidates.policy.experiments

@@ -19,7 +19,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.experiment_design.excitations import (
     MOST_SAMPLES,
     USUAL_RATE_RAD_S,
@@ -201,7 +200,7 @@ def plan(
         _motion_information(candidates, model, effects, motion, noise_rms) for *_, motion in motions
     ]
     free = len(candidates.fitted(model.effects).problem.open)
-    prices = np.array([price_of(candidates, max(len(e.problem.open) - free, 1)) for e in effects])
+    prices = np.array([candidates.price(max(len(e.problem.open) - free, 1)) for e in effects])
     chosen = _chosen(information, free, prices, count)
     runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
     words = tuple(motions[k][0].words for k in chosen)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -12,7 +12,6 @@ import numpy.typing as npt
 from scipy import optimize
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.power.distinction import (
     Change,
     bounded_square,
@@ -102,21 +101,8 @@ class Power:
         return {**vars(self), "confounded_with": list(self.confounded_with)}
 
 
-def power(
-    candidates: Candidates, present: Names, names: Iterable[str] | None = None
-) -> tuple[Power, ...]:
-    """Compute the detection limits of each effect that is not in the model.
-
-    Parameters
-    ----------
-    candidates
-        The runs, and the fit of the effects that are in the model.
-    present
-        Effects of the model.
-    names
-        Effects to evaluate; by default all candidates.
-    """
-    wanted = set(candidates.names if names is None else names) - set(present)
+def power(candidates: Candidates, present: Names) -> tuple[Power, ...]:
+    """Compute the detection limits of each effect that can be added to those of the model."""
     runs = PresentRuns(candidates, present)
     models = {
         name: model
@@ -129,7 +115,7 @@ def power(
         fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
     effects, tie = dict(zip(models, limits, strict=True)), candidates.policy.selection.tie
-    return tuple(_power(runs, effects, name, tie) for name in effects if name in wanted)
+    return tuple(_power(runs, effects, name, tie) for name in effects)
 
 
 @dataclass(frozen=True)
@@ -160,7 +146,7 @@ class _Detectable:
     def of(cls, candidates: Candidates, runs: PresentRuns, model: Strength) -> _Detectable:
         """Compute the detectable strengths of an effect in the present runs."""
         parameters = max(len(model.problem.open) - runs.base.free, 1)
-        price = price_of(candidates, parameters)
+        price = candidates.price(parameters)
         discounts = runs.discounts(runs.unexplained(runs.change(model, 1.0))[:, 0])
         least = [non_centrality(price, parameters, p, discounts) for p in LEVELS]
         times = _required_multiples(runs, model, least)

@@ -19,7 +19,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_force, variance_by_run
@@ -131,5 +130,5 @@ def _model(candidates: Candidates, effects: Names, present: Names) -> Model:
         candidates.fitted(present).problem,
         candidates.converge(present),
         candidates.policy,
-        price_of(candidates, 1),
+        candidates.price(1),
     )

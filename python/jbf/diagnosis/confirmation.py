@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import special
 
+from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.held_out import HeldOutPart, errors_by_run
 from jbf.estimation.held_out_comparison import independent_units, mean_square, predictive_deviance
@@ -101,34 +102,31 @@ class Confirmation:
             _chance(ratios, settings.min_units),
         )
 
-    def units_confirm(self, chance: float, min_share: float) -> bool:
+    def units_confirm(self, level: Level) -> bool:
         """Whether the held-out errors decrease significantly over the independent units.
 
-        Parameters
-        ----------
-        chance
-            Significance level.
-        min_share
-            Minimum relative decrease of the held-out mean square.
+        The mean square must also decrease by the share of an effect of the minimum effect size.
         """
-        most = (1.0 - min_share) * self.before_n**2
-        return self.chance < chance and self.after_n**2 < most
+        most = (1.0 - level.min_share) * self.before_n**2
+        return self.chance < level.chance and self.after_n**2 < most
 
-    def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
-        """Whether the held-out runs confirm a candidate.
+    def confirms(self, evidence: float, policy: Policy) -> bool:
+        """Whether the held-out runs confirm a candidate with this evidence (twice the log gain).
 
-        Parameters
-        ----------
-        evidence
-            Evidence of the candidate, in twice the log likelihood.
-        gained
-            Gain in mean square in the fit, N^2.
-        policy
-            Thresholds of the decision.
+        The held-out predictive density confirms any evidence. The errors alone are not informative
+        where the other runs cannot determine a parameter, for example where one run dominates the
+        estimate of the parameters of the law. Where the evidence is strong, any gain in mean square
+        suffices as well, or a better prediction of most of the runs. A candidate that increases the
+        held-out RMS by more than `policy.held_out.max_rms_ratio` is never confirmed.
         """
-        share = (self.before_n**2 - self.after_n**2) / max(gained, 1e-300)
-        times = self.after_n / max(self.before_n, 1e-300)
-        return held_out_runs_confirm(evidence, self.density, share, self.better, policy, times)
+        if self.after_n / max(self.before_n, 1e-300) > policy.held_out.max_rms_ratio:
+            return False
+        if self.density > policy.held_out.min_gain_share:
+            return True
+        predicts_better = (
+            self.after_n < self.before_n or self.better >= policy.held_out.min_better_share
+        )
+        return evidence > policy.selection.weak_evidence and predicts_better
 
     def describe(self, unit: str) -> str:
         """Describe the held-out RMS with the candidate, for the ledger."""
@@ -195,40 +193,3 @@ def _listed(names: Collection[str]) -> str:
     """First name of a list and the number of the others, as text."""
     first, *more = names
     return first if not more else f"{first} and {len(more)} more"
-
-
-def held_out_runs_confirm(
-    evidence: float,
-    density: float,
-    gained_share: float,
-    better: float,
-    policy: Policy,
-    times: float = 1.0,
-) -> bool:
-    """Whether held-out runs confirm the gain of a candidate in the fit.
-
-    The held-out predictive density confirms any evidence. The errors alone are not informative
-    where the other runs cannot determine a parameter, for example where one run dominates the
-    estimate of the parameters of the law. Where the evidence is strong, any gain in mean square
-    suffices as well, or a better prediction of most of the runs. A candidate that increases the
-    held-out RMS by more than `policy.held_out.max_rms_ratio` is never confirmed.
-
-    Parameters
-    ----------
-    evidence
-        Evidence of the candidate, in twice the log likelihood.
-    density
-        Gain in twice the log predictive density, as a share of the gain in the log likelihood.
-    gained_share
-        Gain in mean square on held-out runs, as a share of the gain in the fit.
-    better
-        Fraction of the runs with a smaller held-out RMS.
-    times
-        Ratio of the held-out RMS with the candidate to that without it.
-    """
-    if times > policy.held_out.max_rms_ratio:
-        return False
-    if density > policy.held_out.min_gain_share:
-        return True
-    strong = evidence > policy.selection.weak_evidence
-    return strong and (gained_share > 0.0 or better >= policy.held_out.min_better_share)

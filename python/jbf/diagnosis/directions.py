@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.least_squares import unexplained
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.samples import Samples
 from jbf.estimation.variance import Places, blocks_of, significant_inflation
@@ -75,13 +76,10 @@ class Directions:
         share
             Ratio of the effective number of samples to the number of samples.
         """
-        size = np.linalg.norm(law, axis=0)
-        law = law[:, size > 0.0] / size[size > 0.0]
-        step, *_ = np.linalg.lstsq(law, effect, rcond=1e-10)
-        unexplained = effect - law @ step
-        length = np.linalg.norm(unexplained, axis=0)
+        part = unexplained(law, effect)
+        length = np.linalg.norm(part, axis=0)
         independent = length > 1e-8 * np.maximum(np.linalg.norm(effect, axis=0), 1e-300)
-        basis = np.linalg.qr(unexplained[:, independent] / length[independent])[0]
+        basis = np.linalg.qr(part[:, independent] / length[independent])[0]
         run_starts = _run_starts(samples)
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
         parts, settings = np.split(unit, run_starts), samples.settings.variance

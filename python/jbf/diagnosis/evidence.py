@@ -62,11 +62,11 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     It is in twice the log likelihood of white noise, and is used for a model that independent units
     confirm. Coloured noise contains the slow part of an effect that another model lacks.
     """
-    if _adds_idle_effect(candidates, richer, simpler):
-        return 0.0
-    if _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):
-        return 0.0
-    if _describes_motion_errors(candidates, richer, simpler):
+    if (
+        _adds_idle_effect(candidates, richer, simpler)
+        or _differ_by_less_than_quantisation(candidates.campaign, richer, simpler)
+        or _describes_motion_errors(candidates, richer, simpler)
+    ):
         return 0.0
     richer, simpler = replace(richer, noise=WHITE), replace(simpler, noise=WHITE)
     samples = common_samples(richer.samples, simpler.samples)

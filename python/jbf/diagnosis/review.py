@@ -17,7 +17,7 @@ from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_ga
 from jbf.estimation.approach import many_peaks
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import can_be_added, can_be_removed
+from jbf.models.catalogue import can_be_removed
 
 Names = tuple[str, ...]
 
@@ -63,16 +63,10 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
     if full_gain(candidates, full, simpler) <= 0.0:
         return False
     rest = tuple(e for e in current if e != name)
-    if units_confirm(candidates, rest, name):
+    if candidates.confirmation(rest, name).units_confirm(candidates.level):
         return True
     least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
     return candidates.held_out_rms(rest) > least
-
-
-def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
-    """Whether an effect of at least the minimum size improves predictions of independent units."""
-    level = candidates.level
-    return candidates.confirmation(rest, name).units_confirm(level.chance, level.min_share)
 
 
 def reconsider(
@@ -109,11 +103,7 @@ def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozense
             continue
         if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
             continue  # inertia and weight do not imitate an effect; an offset may
-        others = [
-            other
-            for other in candidates.names
-            if not (other in current or other in unconfirmed) and can_be_added(other, rest)
-        ]
+        others = [o for o in candidates.addable(rest) if o != name and o not in unconfirmed]
         tie = candidates.policy.selection.tie
         costs = swap_costs(candidates, rest, others, full, simpler, max_loss=-tie, only_best=True)
         best = min(costs, key=costs.__getitem__, default=name)
@@ -212,7 +202,7 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.converge(rest)
-        others = [n for n in candidates.names if n not in present and can_be_added(n, rest)]
+        others = [other for other in candidates.addable(rest) if other != name]
         tie = candidates.policy.selection.tie
         costs = swap_costs(candidates, rest, others, full, simpler, max_loss=tie)
         close = {other: cost for other, cost in costs.items() if cost < tie}

@@ -17,7 +17,6 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.review import units_confirm
 from jbf.estimation.approach import many_peaks
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
@@ -124,7 +123,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             alone = evidence_on_common_samples(candidates, candidate.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "the gain comes from the samples that it excludes"
-            elif confirmation.confirms(gain, bare**2 - rms**2, policy):
+            elif confirmation.confirms(gain, policy):
                 if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)
                 leader, best = name, gain
@@ -167,7 +166,9 @@ def _by_units(candidates: Candidates, present: Names, ranked: Sequence[Ranked]) 
         if not np.isfinite(r.limit)
     }
     for name in sorted(gains, key=lambda name: -gains[name])[: candidates.policy.search.leaders]:
-        if gains[name] > 0.0 and units_confirm(candidates, present, name):
+        if gains[name] <= 0.0:
+            break
+        if candidates.confirmation(present, name).units_confirm(candidates.level):
             return name
     return None
 

@@ -1,10 +1,10 @@
 """Verdict of a diagnosis: rules, named effects and limitations of the conclusions.
 
-`verdict` and `name_is_supported` are pure functions of numbers. Each effect is judged by its own
-evidence. Other residual structure, such as bursts or tones, does not prevent an effect from being
-named, unless the evidence is weak and the structure is larger. A confounder imitates another
-mechanism and therefore has parameters that differ between runs. It is not named, but it is kept in
-the model if it improves the predictions.
+`verdict` is a pure function of numbers. Each effect is judged by its own evidence. Other residual
+structure, such as bursts or tones, does not prevent an effect from being named, unless the evidence
+is weak and the structure is larger. A confounder imitates another mechanism and therefore has
+parameters that differ between runs. It is not named, but it is kept in the model if it improves the
+predictions.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from jbf.diagnosis.residual_structure.constancy import disagreement
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.starting_values import scales
-from jbf.models.catalogue import Effect, Parameter, find_effect
+from jbf.models.catalogue import Parameter, find_effect
 from jbf.models.parameter_value import ParameterValue
 
 Names = tuple[str, ...]
@@ -52,24 +52,6 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
     return "missing" if effects else "adequate"
 
 
-def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -> bool:
-    """Whether an effect may be named although the residual has structure.
-
-    An effect is judged by its own evidence, independently of other structure. A confounder,
-    however, requires different parameters in each run.
-
-    Parameters
-    ----------
-    gain
-        Decrease of the sum of squares by the effect in addition to the others, relative to the
-        variance of the noise, for independent samples.
-    disagreement
-        Gain of run-specific parameters of the effect in excess of chance, in the same unit; None if
-        the runs agree.
-    """
-    return disagreement is None or gain > policy.selection.confounder_ratio * disagreement
-
-
 def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
     """Find the effects that are not named because they may imitate another mechanism.
 
@@ -94,10 +76,11 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
         # Convert n log(S0 / S1) to (S0 - S1) / sigma^2, the unit of the disagreement.
         decrease = share * count * math.expm1(min(gain / (share * count), 100.0))
         test = disagreement(problem, full, name, policy)
-        beyond = test.gain - test.degrees if test.beyond_chance(policy) else None
+        least = policy.selection.confounder_ratio * (test.gain - test.degrees)
+        disagrees = test.beyond_chance(policy) and decrease <= least
         explained = 1.0 - (full.rms / rest.rms) ** 2
         weak = gain - candidates.price(full.free - rest.free) <= policy.selection.weak_evidence
-        if (weak and explained < largest) or not name_is_supported(decrease, beyond, policy):
+        if (weak and explained < largest) or disagrees:
             doubted.append(name)
     return tuple(doubted)
 
@@ -113,10 +96,6 @@ def effects_without_estimate(
     since its period always differs from zero.
     """
 
-    def has_phase(effect: Effect) -> bool:
-        """Whether an effect has a phase."""
-        return any(page.period is not None for page in effect.parameters)
-
     def estimated(name: str, page: Parameter) -> bool:
         """Whether a parameter is estimated and significantly different from its null."""
         value = parameters.get(name)
@@ -125,15 +104,14 @@ def effects_without_estimate(
         null = 0.0 if page.null is None or not math.isfinite(page.null) else page.null
         return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
 
-    pages = {
-        effect.name: [p for p in effect.parameters if p.null is not None or not has_phase(effect)]
-        for effect in map(find_effect, effects)
-    }
-    return tuple(
-        name
-        for name, parts in pages.items()
-        if not any(estimated(f"{name}.{page.name}", page) for page in parts)
-    )
+    without = []
+    for name in effects:
+        pages = find_effect(name).parameters
+        if any(page.period is not None for page in pages):
+            pages = tuple(page for page in pages if page.null is not None)
+        if not any(estimated(f"{name}.{page.name}", page) for page in pages):
+            without.append(name)
+    return tuple(without)
 
 
 def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:

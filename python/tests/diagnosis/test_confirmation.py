@@ -4,11 +4,17 @@ import numpy as np
 import pytest
 from jbf import Rig, Run
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.level import Level
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import errors_by_run
 from scipy import stats
 
 OFFSET = "sensor_offset"
+
+
+def level(chance: float, min_share: float = 0.0) -> Level:
+    """The level of a test, and the minimum relative decrease of the mean square."""
+    return Level(chance, 1, chance, min_share=min_share)
 
 
 def candidates(runs: int, offset_n: float, seconds: float = 6.0) -> Candidates:
@@ -40,22 +46,22 @@ def test_strokes_are_the_independent_units_if_there_are_few_runs() -> None:
     """Three runs of six seconds at 2, 2.2 and 2.4 rad/s have four or five strokes each."""
     found = candidates(3, 0.3).confirmation((), OFFSET)
     assert 12 <= found.units <= 15
-    assert found.units_confirm(1e-3, 0.0)
+    assert found.units_confirm(level(1e-3))
 
 
 def test_significant_effect_below_the_minimum_size_is_not_confirmed() -> None:
     found = candidates(8, 0.3).confirmation((), OFFSET)
     explained = 1.0 - (found.after_n / found.before_n) ** 2
-    assert found.units_confirm(1e-3, 0.9 * explained)
-    assert not found.units_confirm(1e-3, 1.1 * explained)
+    assert found.units_confirm(level(1e-3, 0.9 * explained))
+    assert not found.units_confirm(level(1e-3, 1.1 * explained))
 
 
 def test_absent_effect_is_not_confirmed() -> None:
-    assert not candidates(12, 0.0).confirmation((), OFFSET).units_confirm(1e-3, 0.0)
+    assert not candidates(12, 0.0).confirmation((), OFFSET).units_confirm(level(1e-3))
 
 
 def test_effect_is_not_confirmed_by_fewer_than_six_units() -> None:
     """Two runs that contain fewer than two strokes each."""
     found = candidates(2, 1.0, seconds=1.5).confirmation((), OFFSET)
     assert found.units < 6
-    assert not found.units_confirm(0.5, 0.0)
+    assert not found.units_confirm(level(0.5))

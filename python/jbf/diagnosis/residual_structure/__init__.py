@@ -108,13 +108,10 @@ def find_patterns(
     if not found or less_smoothed is None:
         return [pattern for _, pattern in found]
     other, most = less_smoothed(), policy.motion.max_pattern_ratio
-    ratios = [
-        _pattern_ratio(axis, solution.samples, innovations, residuals, other) for axis, _ in found
-    ]
     return [
         pattern
-        for (_, pattern), ratio in zip(found, ratios, strict=True)
-        if 1.0 / most < ratio < most
+        for axis, pattern in found
+        if 1.0 / most < _pattern_ratio(axis, solution.samples, innovations, residuals, other) < most
     ]
 
 

@@ -77,19 +77,17 @@ class Candidates:
         self.residual: RichestResidual | None = None
         """Residual of the last calibrated model without all that candidates can explain."""
 
-    def with_campaign(
-        self, campaign: Campaign, motion_effects: Iterable[str] | None = None
-    ) -> Candidates:
+    def with_campaign(self, campaign: Campaign, effects: Iterable[str] | None = None) -> Candidates:
         """Return the candidates of a changed campaign; their fits start from these solutions.
 
-        `motion_effects` has the effects with which new errors of the motion were estimated.
+        `effects` are those of the model with which the changed campaign was estimated.
         """
         self.earlier = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
         # Valid until the level is calibrated for a model of the new campaign.
         again._level = self._level
-        if motion_effects is not None:
-            again.fitted(motion_effects).motion_estimated = True
+        if effects is not None and campaign.samples.motion is not self.campaign.samples.motion:
+            again.fitted(effects).motion_estimated = True
         return again
 
     # ---- which effects ----------------------------------------------------------------------

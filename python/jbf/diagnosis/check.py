@@ -11,11 +11,13 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
-from jbf.diagnosis.drive import machine_of
+from jbf.diagnosis.candidates import Progress
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
+from jbf.diagnosis.review import machine_of
 from jbf.errors import InputError, JbfError
 from jbf.estimation.bootstrap import simulated_runs
 from jbf.models.model import Model
@@ -24,7 +26,6 @@ from jbf.records.run import Run
 from jbf.results import Result
 
 Names = tuple[str, ...]
-Progress = Callable[[str, int, int], None]
 
 SURE = 0.95
 """Confidence level of the interval of a rate (Clopper & Pearson 1934), not used in a verdict."""
@@ -174,27 +175,6 @@ class Check(Result):
         }
 
 
-@dataclass(frozen=True)
-class _Task:
-    """A campaign to simulate and diagnose.
-
-    Attributes
-    ----------
-    model, runs
-        Model that generates the records, and runs with the motions.
-    hidden, draw
-        Effects in the simulation, and index of the random draw.
-    policy
-        Thresholds of the diagnosis.
-    """
-
-    model: Model
-    runs: tuple[Run, ...]
-    hidden: Names
-    draw: int
-    policy: Policy
-
-
 def check(
     model: Model,
     runs: Iterable[Run],
@@ -268,7 +248,7 @@ def check(
     finished = {(a.hidden, a.draw) for a in answers}
     hidden = dict.fromkeys([machine_of(model.rig, model.effects), tuple(model.effects)])
     tasks = [
-        _Task(model, every, effects, draw, policy)
+        partial(_answer, model, every, effects, draw, policy)
         for draw in range(campaigns)
         for effects in hidden
         if (effects, draw) not in finished
@@ -293,24 +273,23 @@ def identity(model: Model, runs: Iterable[Run], policy: Policy = DEFAULT) -> str
     return digest.hexdigest()[:16]
 
 
-def _answered(tasks: Sequence[_Task], executor: Executor | None) -> Iterator[Answer]:
+def _answered(tasks: Sequence[Callable[[], Answer]], executor: Executor | None) -> Iterator[Answer]:
     """Simulate and diagnose campaigns, and return each result as soon as it is available."""
     if executor is None:
-        yield from map(_answer, tasks)
+        yield from (task() for task in tasks)
         return
-    running = [executor.submit(_answer, task) for task in tasks]
-    for future in as_completed(running):
+    for future in as_completed([executor.submit(task) for task in tasks]):
         yield future.result()
 
 
-def _answer(task: _Task) -> Answer:
-    """Simulate and diagnose one campaign."""
+def _answer(
+    model: Model, runs: tuple[Run, ...], hidden: Names, draw: int, policy: Policy
+) -> Answer:
+    """Simulate one campaign with the effects `hidden`, and diagnose it."""
     try:
-        again = simulated_runs(task.model, task.runs, task.hidden, task.draw)
-        diagnosis = diagnose(
-            task.model.rig, again, law=task.model.law, clock=task.model.clock, policy=task.policy
-        )
+        again = simulated_runs(model, runs, hidden, draw)
+        diagnosis = diagnose(model.rig, again, law=model.law, clock=model.clock, policy=policy)
     except JbfError:
-        return Answer(task.hidden, task.draw, "failed", (), {})
+        return Answer(hidden, draw, "failed", (), {})
     named = (*diagnosis.machine, *diagnosis.effects)
-    return Answer(task.hidden, task.draw, diagnosis.verdict, named, diagnosis.alternatives)
+    return Answer(hidden, draw, diagnosis.verdict, named, diagnosis.alternatives)

@@ -27,8 +27,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy import special
 
-from jbf.diagnosis.decoys import decoy_gains
-from jbf.diagnosis.directions import Directions, RichestResidual, largest_common_group
+from jbf.diagnosis.directions import (
+    Directions,
+    RichestResidual,
+    decoy_gains,
+    largest_common_group,
+)
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.least_squares import least_squares, triangular
 from jbf.estimation.likelihood import effective_share, promised_gain, score_gain

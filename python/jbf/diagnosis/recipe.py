@@ -16,7 +16,6 @@ from jbf.diagnosis.budget import (
     sufficient_time_s,
 )
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.drive import OFFSET, machine_of, with_errors_of_motion
 from jbf.diagnosis.experiment_design.excitations import Limits
 from jbf.diagnosis.experiment_design.next_run import (
     Experiment,
@@ -29,7 +28,14 @@ from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.result import Diagnosis
-from jbf.diagnosis.review import Names, start_model, weights
+from jbf.diagnosis.review import (
+    OFFSET,
+    Names,
+    machine_of,
+    start_model,
+    weights,
+    with_errors_of_motion,
+)
 from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.verdict import (
     best_predicting,

@@ -2,24 +2,40 @@
 
 An effect is removed if it has no evidence and held-out runs do not confirm it. It is replaced by
 another effect that has more evidence. The same comparison gives the posterior weights of the
-alternatives to an effect. `start_model` reviews the machine terms of a drive.
+alternatives to an effect.
+
+A motor accelerates its load and carries its weight, independently of friction. Inertia or mass,
+weight and offset (the machine terms) are part of the initial model of the diagnosis of a drive;
+they are not missing effects. The errors of the recorded motion are part of the likelihood.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.estimation.approach import many_peaks
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.generalised_least_squares import with_motion_errors
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_removed
+from jbf.records.rig import Rig
 
 Names = tuple[str, ...]
+
+OFFSET = "sensor_offset"
+TERMS = (OFFSET, "inertia", "gravity")
+"""Effects that are not friction and that no law can represent."""
+
+
+def machine_of(rig: Rig, present: Iterable[str]) -> Names:
+    """Machine terms among the effects `present` in a model; empty for a rig without a drive."""
+    return () if rig.drive is None else tuple(name for name in present if name in TERMS)
 
 
 def start_model(candidates: Candidates) -> Names:
@@ -35,6 +51,22 @@ def start_model(candidates: Candidates) -> Names:
         candidates.look(present, near)
         candidates.converge(present)
     return still_needed(candidates, present)
+
+
+def with_errors_of_motion(candidates: Candidates, base: Names) -> Campaign | None:
+    """Return a drive's campaign with the covariance of the motion's errors in the likelihood.
+
+    The errors are estimated with the machine terms `base`. The force is corrected by a time delay
+    common to all runs. Returns None for a rig without a drive, or if these errors are negligible.
+    """
+    if candidates.campaign.rig.drive is None:
+        return None
+    problem, solution = candidates.fitted(base).problem, candidates.converge(base)
+    problem, solution = with_motion_errors(problem, solution)
+    if solution.samples.motion is None:
+        return None
+    campaign = problem.campaign
+    return replace(campaign, samples=replace(campaign.samples, motion=solution.samples.motion))
 
 
 def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:

@@ -152,8 +152,9 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             update = best_term_update(candidates, present)
         if update is not None:
             updates += 1
-            candidates = candidates.with_campaign(update.campaign, update.motion_effects)
-            kept = tuple(n for n in present if n in update.effects)
+            campaign, effects = update
+            candidates = candidates.with_campaign(campaign, effects)
+            kept = tuple(n for n in present if n in effects)
             present, review_due = still_needed(candidates, kept), True
             visited, follow = {frozenset(present)}, "promising"
             # The model is tested again with the term: its step replaces the last one.

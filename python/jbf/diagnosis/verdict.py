@@ -16,10 +16,10 @@ from typing import Literal
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.drive import machine_of
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.residual_structure.constancy import disagreement
+from jbf.diagnosis.review import machine_of
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.starting_values import scales

@@ -8,7 +8,7 @@ fewest parameters is selected.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,9 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.drive import TERMS, with_errors_of_motion
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.review import start_model
+from jbf.diagnosis.review import TERMS, start_model, with_errors_of_motion
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_parts
@@ -28,7 +27,6 @@ from jbf.estimation.transients import check_film_rate, without_transients
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock
-from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -94,28 +92,21 @@ class HeldOut:
     static_below_kinetic: bool = False
 
 
-def allowed(rig: Rig) -> list[str]:
-    """Names of the laws whose required quantities a rig defines."""
-    allowed_laws = []
+def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
+    """Laws that the rig allows and the records can resolve; reasons for excluding others, by name.
+
+    A law is not allowed if the rig lacks a quantity that it requires. It is excluded with a reason
+    if its film is too fast for the records, or if it has memory and the records contain steady
+    states only.
+    """
+    resolved, refused = [], {}
     for name in laws():
         if name in ON_REQUEST:
             continue
         try:
-            check_rig(rig, name)
+            check_rig(campaign.rig, name)
         except InputError:
             continue
-        allowed_laws.append(name)
-    return allowed_laws
-
-
-def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
-    """Allowed laws that the records can resolve, and the reasons for excluding others, by name.
-
-    A law is excluded if its film is too fast for the records, or if it has memory and the records
-    contain steady states only.
-    """
-    resolved, refused = [], {}
-    for name in allowed(campaign.rig):
         try:
             check_film_rate(campaign, name, clock)
         except InputError as error:
@@ -170,11 +161,8 @@ def which_law(
     if not held_out:
         limit_s = None if time_limit is None else time_limit.seconds
         raise Unfinished(steps=campaign.work.most, file=campaign.named, time_limit_s=limit_s)
-    counts = [len(find_law(name).parameters) for name in held_out]
-    tried = [
-        replace(law, static_below_kinetic=held_out[law.law].static_below_kinetic)
-        for law in _compared(list(held_out), counts, list(held_out.values()), policy, campaign)
-    ]
+    entries = {name: (len(find_law(name).parameters), errors) for name, errors in held_out.items()}
+    tried = compared(entries, policy, policy.least_share(campaign.motion_share))
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
     return (first, *(t for t in tried if t is not first)), refused
 
@@ -196,19 +184,6 @@ def laws_to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
         names.insert(0, SIMPLEST)
     evaluated = {t.law for t in laws}
     return tuple(name for name in dict.fromkeys(names) if name in evaluated)
-
-
-def _compared(
-    names: Sequence[str],
-    parameters: Sequence[int],
-    held_out: Sequence[HeldOut],
-    policy: Policy,
-    campaign: Campaign,
-) -> list[LawTried]:
-    """Rank laws by held-out errors, with the tie limit that the motion's errors require."""
-    errors, white = [h.errors for h in held_out], [h.white for h in held_out]
-    share = policy.least_share(campaign.motion_share)
-    return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 
 def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldOut:
@@ -254,36 +229,34 @@ def _with_starts(samples: Samples, every: Samples) -> Samples:
 
 
 def compared(
-    names: Sequence[str],
-    parameters: Sequence[int],
-    errors: Sequence[Sequence[Array]],
-    policy: Policy,
-    *,
-    white: Sequence[Sequence[Array]] | None = None,
-    least_share: float = 0.0,
+    entries: Mapping[str, tuple[int, HeldOut]], policy: Policy, least_share: float = 0.0
 ) -> list[LawTried]:
     """Rank models by their held-out errors, best first, and mark those tied with the best.
 
+    The errors whitened for the errors of the motion determine the ranking, since an elastic law
+    would smooth acceleration errors next to a reversal.
+
     Parameters
     ----------
-    names, parameters
-        Names of the models, and their numbers of parameters.
-    errors
-        Held-out errors of each model, N, one array per run; NaN at excluded samples.
-    white
-        `errors` whitened with the covariance of the motion errors, if it is known. These determine
-        the ranking, since an elastic law would smooth acceleration errors next to a reversal.
+    entries
+        Number of parameters and held-out errors of each model, by name.
     least_share
         Minimum relative difference of the mean squares of models that are not tied.
     """
     plain, decisive = (
         np.array([np.concatenate(rows) ** 2 for rows in kind])
-        for kind in (errors, errors if white is None else white)
+        for kind in zip(*((h.errors, h.white) for _, h in entries.values()), strict=True)
     )
     shared = np.isfinite(plain).all(axis=0)
+
+    def law_tried(i: int, rms: float, tied: bool) -> LawTried:
+        """Result of the i-th model."""
+        parameters, held_out = entries[names[i]]
+        return LawTried(names[i], parameters, rms, tied, held_out.static_below_kinetic)
+
+    names = list(entries)
     if not shared.any():
-        each = [float(np.sqrt(np.nanmean(rows))) for rows in plain]
-        return [LawTried(n, k, e, True) for n, k, e in zip(names, parameters, each, strict=True)]
+        return [law_tried(i, float(np.sqrt(np.nanmean(e))), True) for i, e in enumerate(plain)]
     rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
     # Errors of neighbouring samples are correlated; sections are nearly independent.
     parts = np.array_split(decisive, min(policy.laws.sections, decisive.shape[1]), axis=1)
@@ -295,7 +268,7 @@ def compared(
     same = max(policy.laws.same_ratio**2 - 1.0, least_share) * level[best]
     tied = worse.mean(axis=1) <= np.maximum(chance, same)
     order = np.argsort(level, kind="stable")
-    return [LawTried(names[i], parameters[i], float(rms[i]), bool(tied[i])) for i in order]
+    return [law_tried(i, float(rms[i]), bool(tied[i])) for i in order]
 
 
 def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> LawTried | None:
@@ -311,7 +284,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     policy, campaign = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in TERMS)
     most = len(candidates.fitted(effects).problem.open)
-    held_out, names, counts = [held_out_errors(candidates, effects)], [""], [most]
+    entries = {"": (most, held_out_errors(candidates, effects))}
     for name in followed(campaign, clock)[0]:
         limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
         other = Candidates(limited, name, clock, policy)
@@ -326,10 +299,8 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
             campaign.work.check()  # the law exceeded its share; at the time limit, stop
             continue
         if errors is not None:
-            held_out.append(errors)
-            names.append(name)
-            counts.append(count)
-    tried = _compared(names, counts, held_out, policy, campaign)
+            entries[name] = count, errors
+    tried = compared(entries, policy, policy.least_share(campaign.motion_share))
     present = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
     # Of tied laws prefer the one with the fewest parameters: their order is due to chance.

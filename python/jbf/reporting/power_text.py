@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from textwrap import wrap
 
-from jbf.diagnosis.decoys import rate_below
+from jbf.diagnosis.directions import rate_below
 from jbf.diagnosis.experiment_design.plan import Plan
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.power import Power

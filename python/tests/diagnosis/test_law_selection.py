@@ -9,7 +9,8 @@ from by_hand import Array
 from golden import golden, golden_campaign
 from jbf import Diagnosis, Drive, Rig, Run, diagnose
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.which_law import LawTried, allowed, compared
+from jbf.diagnosis.which_law import HeldOut, LawTried, compared, followed
+from jbf.estimation.campaign import Campaign
 
 SAMPLES, STRETCHES = 4000, 40
 
@@ -23,8 +24,9 @@ def alternating(rms: float, stretch_variation: float = 0.0) -> list[Array]:
 
 def compare_errors(**errors: list[Array]) -> dict[str, LawTried]:
     """Laws in the order of their held-out error."""
-    names = list(errors)
-    tried = compared(names, [len(name) for name in names], list(errors.values()), DEFAULT)
+    tried = compared(
+        {name: (len(name), HeldOut(rows, rows)) for name, rows in errors.items()}, DEFAULT
+    )
     return {law.law: law for law in tried}
 
 
@@ -65,9 +67,15 @@ def test_laws_are_compared_only_at_samples_that_every_law_predicts() -> None:
 
 
 def test_laws_of_a_bearing_require_a_rig_with_a_bearing() -> None:
-    assert "journal" not in allowed(Rig())
-    assert {"coulomb", "stribeck"} <= set(allowed(Rig()))
-    assert {"coulomb", "journal"} <= set(allowed(Rig.thesis()))
+    t = np.arange(0.0, 4.0, 0.002)
+    run = Run.from_arrays(t, 0.1 * np.sin(3.0 * t), np.sign(np.sin(3.0 * t)))
+    slide, bearing = (
+        followed(Campaign.prepare(rig, [run]), "journal") for rig in (Rig(), Rig.thesis())
+    )
+    assert "journal" not in slide[0]
+    assert "law journal" not in slide[1]
+    assert {"coulomb", "stribeck"} <= set(slide[0])
+    assert {"coulomb", "journal"} <= set(bearing[0])
 
 
 def diagnosis_with_offset(law: str, offset_n: float) -> Diagnosis:

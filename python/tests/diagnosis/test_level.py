@@ -9,8 +9,13 @@ import pytest
 from by_hand import Array
 from jbf import Diagnosis, InputError, Rig, diagnose
 from jbf.diagnosis import level as levels
-from jbf.diagnosis.decoys import DRAWS, decoy_gains, rate_below
-from jbf.diagnosis.directions import Directions, RichestResidual
+from jbf.diagnosis.directions import (
+    DECOY_DRAWS,
+    Directions,
+    RichestResidual,
+    decoy_gains,
+    rate_below,
+)
 from jbf.diagnosis.level import Level, with_decoys
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.policy_sections import Selection
@@ -244,22 +249,22 @@ def test_decoy_is_a_candidate_shifted_cyclically_within_each_run(ends: list[int]
     random = np.random.default_rng(4)
     noise = random.standard_normal(700)
     one = _decoy(random.standard_normal((700, 1)), noise, ends, counted=0.5)
-    scores = np.zeros(DRAWS)
-    draws = np.random.default_rng(DRAWS)
+    scores = np.zeros(DECOY_DRAWS)
+    draws = np.random.default_rng(DECOY_DRAWS)
     for way, e in zip(np.split(one.basis[:, 0], ends), np.split(noise, ends), strict=True):
         if len(e):
             by_shift = np.array([np.roll(way, shift) @ e for shift in range(len(e))])
-            scores += by_shift[draws.integers(0, len(e), DRAWS)]
+            scores += by_shift[draws.integers(0, len(e), DECOY_DRAWS)]
     np.testing.assert_allclose(decoy_gains([one])[0], 0.5 * scores**2, rtol=1e-9)
 
 
 def test_decoys_are_named_only_if_their_gain_exceeds_the_threshold() -> None:
     """Every shift of a constant has a score of 16 in a residual of 2: a gain of 256."""
     one = _one_direction(np.full(64, 0.125), np.full(64, 2.0), [0])
-    for threshold, named in ((255.9, DRAWS), (256.1, 0)):
+    for threshold, named in ((255.9, DECOY_DRAWS), (256.1, 0)):
         level = Level(0.01, 1, 1.0, min_gain=threshold)
         found = with_decoys(level, [one], 100)
-        assert (found.decoys, found.decoys_named) == (DRAWS, named)
+        assert (found.decoys, found.decoys_named) == (DECOY_DRAWS, named)
     assert with_decoys(Level(0.01, 1, 1.0), [], 100) == Level(0.01, 1, 1.0)
 
 
@@ -274,7 +279,7 @@ def test_diagnosis_reports_level_and_decoys_of_its_significance_tests() -> None:
     assert (level.candidates, level.false_alarm_rate) == (len(found.steps[0].trials), 0.01)
     assert level.chance <= 0.01 / level.candidates
     assert level.blocks > 0
-    assert (level.decoys, level.decoys_named) == (DRAWS, 0)
+    assert (level.decoys, level.decoys_named) == (DECOY_DRAWS, 0)
     assert found.to_dict()["level"]["critical"] == level.critical
 
 

@@ -150,7 +150,7 @@ def test_random_effect_is_added_only_if_it_has_more_evidence_than_the_leading_ef
     assert best_term_update(candidates, (), 1.01 * evidence) is None
     update = best_term_update(candidates, (), 0.99 * evidence)
     assert update is not None
-    assert [f.kind for f in update.campaign.more_findings] == ["level_by_run"]
+    assert [f.kind for f in update[0].more_findings] == ["level_by_run"]
 
 
 def test_variance_by_run_does_not_compete_with_an_effect() -> None:
@@ -160,7 +160,7 @@ def test_variance_by_run_does_not_compete_with_an_effect() -> None:
     assert best_term_update(candidates, (), 0.0) is None
     update = best_term_update(candidates, ())
     assert update is not None
-    assert [f.kind for f in update.campaign.more_findings] == ["noise_by_run"]
+    assert [f.kind for f in update[0].more_findings] == ["noise_by_run"]
 
 
 def test_selection_that_exceeds_its_budget_ends_with_the_last_reviewed_model() -> None:

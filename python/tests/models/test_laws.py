@@ -7,7 +7,8 @@ import friction_laws as independent
 import jbf
 import numpy as np
 import pytest
-from jbf.diagnosis.which_law import allowed
+from jbf.diagnosis.which_law import followed
+from jbf.estimation.campaign import Campaign
 from shared import shared
 
 DRIVE_LAWS = [law.name for law in jbf.laws().values() if not law.needs_bearing]
@@ -125,8 +126,12 @@ def test_rate_and_state_prediction_agrees_with_a_scipy_integration() -> None:
 
 
 def test_automatic_law_selection_excludes_the_rate_and_state_law() -> None:
-    assert "rate_and_state" not in allowed(jbf.Rig())
-    assert "stribeck" in allowed(jbf.Rig())
+    t = np.arange(0.0, 4.0, 0.02)
+    run = jbf.Run.from_arrays(t, 0.1 * np.sin(3.0 * t), np.sign(np.sin(3.0 * t)))
+    resolved, refused = followed(Campaign.prepare(jbf.Rig(), [run]), "journal")
+    assert "rate_and_state" not in resolved
+    assert "law rate_and_state" not in refused
+    assert "stribeck" in resolved
 
 
 # Amplitude and Coulomb level of a joint (rad, N m), a machine slide and a precision stage (m, N).

@@ -18,7 +18,7 @@ NUMERICAL = {
     "reported next to the verdict or used after it: power, proposals, checks, final fit": """
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
-        diagnosis.decoys: DRAWS SURE
+        diagnosis.directions: DECOY_DRAWS SURE
         diagnosis.experiment_design.excitations: MOST_SAMPLES RATES_RAD_S SHARES STOP_SHARES REST_S
         diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S REACH
         diagnosis.experiment_design.next_run: LEAST_SAMPLES

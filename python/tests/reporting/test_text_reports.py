@@ -10,7 +10,7 @@ from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
 from golden import golden
 from jbf import Bootstrap, Model, ParameterValue, Rig, TrajectoryFit
 from jbf.diagnosis.check import Answer, Check
-from jbf.diagnosis.decoys import rate_below
+from jbf.diagnosis.directions import rate_below
 from jbf.diagnosis.experiment_design.plan import Plan
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.power import Power

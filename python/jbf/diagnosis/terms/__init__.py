@@ -16,8 +16,6 @@ effects.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
@@ -51,38 +49,16 @@ if no effect is accepted.
 """
 
 
-@dataclass(frozen=True)
-class TermUpdate:
-    """A campaign with changed terms, and the effects that remain in the model.
-
-    Attributes
-    ----------
-    campaign
-        The campaign with a term added, or with a random effect removed.
-    effects
-        Effects that are still needed.
-    motion_effects
-        Effects with which the errors of the motion were re-estimated; None if they are unchanged.
-    """
-
-    campaign: Campaign
-    effects: Names
-    motion_effects: Names | None = None
-
-
 def best_term_update(
     candidates: Candidates, present: Names, min_evidence: float | None = None
-) -> TermUpdate | None:
+) -> tuple[Campaign, Names] | None:
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
-    A random effect is removed if it is no longer significant. Returns None if no term changes.
+    A random effect is removed if it is no longer significant. Returns the changed campaign and the
+    effects that remain in the model; None if no term changes.
 
     Parameters
     ----------
-    candidates
-        The fits.
-    present
-        Effects of the model.
     min_evidence
         Evidence for the accepted effect, with which some terms compete; None if no effect is
         accepted.
@@ -98,11 +74,9 @@ def best_term_update(
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
         if is_accepted(proposal, model, min_evidence or 0.0):
-            effects = proposal.problem.effects
-            changed = proposal.campaign.samples.motion is not candidates.campaign.samples.motion
-            return TermUpdate(proposal.campaign, effects, effects if changed else None)
+            return proposal.campaign, proposal.problem.effects
     fewer = without_random_effect(full) if min_evidence is None else None
-    return None if fewer is None else TermUpdate(fewer, present)
+    return None if fewer is None else (fewer, present)
 
 
 def re_estimated_motion(candidates: Candidates, present: Names) -> Campaign | None:

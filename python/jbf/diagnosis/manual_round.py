@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.ledger import Step
-from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.rounds import step
 from jbf.diagnosis.selection import try_candidates
@@ -56,7 +56,6 @@ def manual_round(
     *,
     law: str | None = None,
     clock: Clock = "journal",
-    policy: Policy = DEFAULT,
     progress: Progress | None = None,
     fitted_as: Callable[[Fit, Comparison], None] | None = None,
 ) -> ManualRound:
@@ -71,8 +70,6 @@ def manual_round(
     law, clock
         Base law (by default `journal` for a bearing and `coulomb` for a drive), and the definition
         of the time constant of its film.
-    policy
-        Thresholds and settings of the tests.
     progress
         Called with a message, the number of tried candidates and the total number.
     fitted_as
@@ -95,17 +92,18 @@ def manual_round(
         progress("fitting", 0, 0)
     # Use the model of `fit`, so that the user can reproduce the step.
     fitted = fit(rig, runs, effects, law=law, clock=clock)
-    chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs, policy.estimation)
+    chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs, DEFAULT.estimation)
     comparison = compare_prepared(fitted.model, campaign)
     if fitted_as is not None:
         fitted_as(fitted, comparison)
-    candidates = Candidates(without_transients(campaign, law, clock), law, clock, policy, progress)
+    settled = without_transients(campaign, law, clock)
+    candidates = Candidates(settled, law, clock, DEFAULT, progress)
     try:
-        settled = without_further_transients(
+        further = without_further_transients(
             candidates.fitted(chosen).problem, candidates.converge(chosen)
         )
-        if settled is not None:
-            candidates = candidates.with_campaign(settled)
+        if further is not None:
+            candidates = candidates.with_campaign(further)
         trials = try_candidates(candidates, chosen).trials
         if progress is not None:
             progress("computing detection limits", 0, 0)

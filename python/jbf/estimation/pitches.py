@@ -121,17 +121,16 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
         highest.append(float(span / periods[k]))
         # With unequal numbers of passes over the positions, side lobes of a high line may exceed a
         # lower line.
-        signal = signal - _wave(signal, place, highest[-1])
+        signal = signal - fitted_wave(2.0 * np.pi * place / highest[-1], signal)[1]
         resolved[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = False
     return tuple(highest)
 
 
-def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
-    """Least-squares fit of a cosine and a sine of one pitch to a signal over the position."""
-    phase = 2.0 * np.pi * place / pitch_m
+def fitted_wave(phase: Array, values: Array) -> tuple[float, Array]:
+    """Amplitude and values of the cosine and sine of a phase (rad) with the best fit to values."""
     pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
-    solution, *_ = np.linalg.lstsq(pair, signal, rcond=None)
-    return np.asarray(pair @ solution)
+    solution, *_ = np.linalg.lstsq(pair, values, rcond=None)
+    return float(np.hypot(*solution)), np.asarray(pair @ solution)
 
 
 def mass(campaign: Campaign) -> float | None:

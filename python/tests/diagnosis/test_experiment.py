@@ -21,7 +21,6 @@ from jbf.diagnosis.experiment_design.excitations import (
 from jbf.diagnosis.experiment_design.next_run import (
     Rival,
     filled_limits,
-    mean_detection_probability,
     motions,
     propose,
     propose_detection_run,
@@ -29,6 +28,7 @@ from jbf.diagnosis.experiment_design.next_run import (
 )
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power import power
+from jbf.diagnosis.power.distinction import detection_probability
 from jbf.diagnosis.power.strength import strength_of
 from jbf.estimation.campaign import Campaign
 from linear_campaigns import coulomb_candidates, coulomb_run
@@ -242,9 +242,9 @@ def test_probability_to_name_an_effect_is_the_mean_over_three_strengths(evidence
     expected = np.mean(
         [stats.ncx2.sf(32.0, 1, s**2 * evidence + 1e-12) for s in DEFAULT.experiments.strengths]
     )
-    assert mean_detection_probability(
-        evidence, 32.0, DEFAULT.experiments.strengths
-    ) == pytest.approx(float(expected), abs=1e-6)
+    squares = np.array(DEFAULT.experiments.strengths) ** 2
+    found = np.mean(detection_probability(32.0, 1, squares * evidence))
+    assert found == pytest.approx(float(expected), abs=1e-6)
 
 
 def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> None:
@@ -259,7 +259,7 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
         changed = [m.problem.chain.predict(m.values(1.0), [motion])[0] for m in models]
         shown = [residual_square_after_fit(base, base.predict(motion), f, step_s) for f in changed]
         found = sum(
-            mean_detection_probability(e, p, DEFAULT.experiments.strengths)
+            np.mean(detection_probability(p, 1, np.array(DEFAULT.experiments.strengths) ** 2 * e))
             for e, p in zip(shown, prices, strict=True)
         )
         total = float(np.sum(np.log1p(shown)))

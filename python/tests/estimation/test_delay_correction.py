@@ -108,7 +108,7 @@ def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
 ) -> None:
     problem, start = fitted(one_way_campaign(LARGE_DELAYS_S))[0], np.array(start_s)
     found = shifts.fit_delays_by_run(
-        problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
+        shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
     )
     assert max(LARGE_DELAYS_S) > 3.0 * SETTINGS.delays.linear_s
     np.testing.assert_allclose(found.delays_s, LARGE_DELAYS_S, atol=4e-4)
@@ -117,7 +117,7 @@ def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
 
 def test_delay_effect_is_replaced_by_run_delays_if_the_runs_differ_in_delay() -> None:
     fit = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
-    found = shifts.fit_delays_by_run(fit[0], unshifted(*fit))
+    found = shifts.fit_delays_by_run(unshifted(*fit))
     assert found.problem.effects == ()
     np.testing.assert_allclose(found.delays_s, LARGE_DELAYS_S, atol=4e-4)
 
@@ -133,7 +133,7 @@ def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
         runs.append(Run.from_arrays(t, v, force, name=f"run {i}"))
     problem, solution = fitted(Campaign.prepare(Rig(), runs))
     before = unshifted(problem, solution)
-    assert shifts.fit_delays_by_run(problem, before) is before
+    assert shifts.fit_delays_by_run(before) is before
     assert corrected(problem, solution) is None
 
 
@@ -142,7 +142,7 @@ def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
     """At the end of the longer run the error is 2.4 ms or 36 ms; a step removes at most 8 ms."""
     durations = (20.0, 10.0)
     problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
-    found = shifts.fit_clock_drift(problem, unshifted(problem, solution))
+    found = shifts.fit_clock_drift(unshifted(problem, solution))
     step = drift_step(found.problem, found.solution)
     assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
     np.testing.assert_allclose(found.delays_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)

@@ -93,32 +93,28 @@ class Limits:
         named["duration_s"] = self.duration_s
         pairs = [(name, value) for name, value in named.items() if value is not None]
         pairs += [("load_n", value) for value in self.load_n or ()]
-        if self.duration_s > LONGEST_S:
-            raise InputError(
-                problem=f"the limit duration_s = {self.duration_s:g} exceeds one day",
-                remedy=f"use at most {LONGEST_S:g}",
+        checks = [
+            (
+                self.duration_s > LONGEST_S,
+                f"duration_s = {self.duration_s:g} exceeds one day",
+                f"use at most {LONGEST_S:g}",
             )
+        ]
         for name, value in pairs:
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(
-                    problem=f"the limit {name} = {value:g}", remedy="must be above zero"
-                )
-            if value > MOST:
-                raise InputError(
-                    problem=f"the limit {name} = {value:g} is not plausible",
-                    remedy="give it in SI units",
-                )
-        if self.load_n and self.load_n[0] > self.load_n[1]:
-            raise InputError(
-                problem=f"the limit load_n = {self.load_n[0]:g} to {self.load_n[1]:g}",
-                remedy="give the smaller load first",
-            )
+            positive = np.isfinite(value) and value > 0.0
+            checks.append((not positive, f"{name} = {value:g}", "must be above zero"))
+            plausible = f"{name} = {value:g} is not plausible"
+            checks.append((value > MOST, plausible, "give it in SI units"))
+        load = self.load_n or (0.0, 0.0)
+        words = f"load_n = {load[0]:g} to {load[1]:g}"
+        checks.append((load[0] > load[1], words, "give the smaller load first"))
         low, high = self.temperature_c or (0.0, 0.0)
-        if not (np.isfinite([low, high]).all() and low <= high):
-            raise InputError(
-                problem=f"the limit temperature_c = {low:g} to {high:g}",
-                remedy="give two temperatures, the lower first",
-            )
+        ordered = np.isfinite([low, high]).all() and low <= high
+        words = f"temperature_c = {low:g} to {high:g}"
+        checks.append((not ordered, words, "give two temperatures, the lower first"))
+        for bad, text, remedy in checks:
+            if bad:
+                raise InputError(problem=f"the limit {text}", remedy=remedy)
 
     def filled(self, campaign: Campaign) -> Limits:
         """Return the limits with each None replaced by the value of the recorded runs."""

@@ -275,6 +275,7 @@ def propose_detection_run(
         for name, (problem, _) in richer.items()
     }
     settings = candidates.policy.experiments
+    squares = np.array(settings.strengths) ** 2
 
     def evidence_in(motion: Driven) -> dict[str, float]:
         """Non-centrality of each hidden effect, at its typical strength, in a motion."""
@@ -287,11 +288,12 @@ def propose_detection_run(
     def expected_detections(motion: Driven) -> Rank:
         """Expected number of detected effects in a motion, and a total log evidence for ties."""
         evidence = evidence_in(motion)
+        # The strength of an effect is unknown: average over several strengths.
         chances = (
-            mean_detection_probability(evidence[name], prices[name], settings.strengths)
+            np.mean(detection_probability(prices[name], 1, squares * evidence[name]))
             for name in hidden
         )
-        return round(sum(chances), 2), float(sum(np.log1p(e) for e in evidence.values()))
+        return round(float(sum(chances)), 2), float(sum(np.log1p(e) for e in evidence.values()))
 
     listed = ", ".join(hidden)
     best = _best_motion(candidates, filled, step_s, expected_detections)
@@ -313,18 +315,3 @@ def propose_detection_run(
     mean = float(np.exp(np.mean(np.log(list(clear.values())))))
     sigma = float(np.sqrt(mean / len(run)))
     return Experiment(words, run, sigma * base.noise_rms, sigma, mean)
-
-
-def mean_detection_probability(evidence: float, price: float, strengths: Sequence[float]) -> float:
-    """Probability that an effect is detected, averaged over several possible strengths.
-
-    Parameters
-    ----------
-    evidence
-        Non-centrality of the test at the typical strength.
-    price
-        Threshold for the gain in twice the log likelihood.
-    strengths
-        Strengths as multiples of the typical one, each equally likely.
-    """
-    return float(np.mean(detection_probability(price, 1, np.array(strengths) ** 2 * evidence)))

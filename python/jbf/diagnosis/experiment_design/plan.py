@@ -260,25 +260,17 @@ def _chosen(information: Sequence[Array], free: int, prices: Array, count: int) 
         Indices of the chosen motions.
     """
     chosen: list[int] = []
-    total = np.zeros_like(information[0])
+
+    def criterion(k: int) -> float:
+        """Design criterion with motion k, plus that without the run whose removal costs most."""
+        runs = [*chosen, k]
+        total = np.sum([information[i] for i in runs], axis=0)
+        without = min(_design_criterion(total - information[i], free, prices) for i in set(runs))
+        return _design_criterion(total, free, prices) + without
+
     for _ in range(count):
-        criteria = [
-            _design_criterion(total + one, free, prices)
-            + _criterion_without_best([*chosen, k], information, free, prices)
-            for k, one in enumerate(information)
-        ]
-        best = int(np.argmax(criteria))
-        chosen.append(best)
-        total = total + information[best]
+        chosen.append(max(range(len(information)), key=criterion))
     return chosen
-
-
-def _criterion_without_best(
-    chosen: Sequence[int], information: Sequence[Array], free: int, prices: Array
-) -> float:
-    """Design criterion of chosen motions without the one whose removal reduces it most."""
-    total = np.sum([information[k] for k in chosen], axis=0)
-    return min(_design_criterion(total - information[k], free, prices) for k in set(chosen))
 
 
 def _design_criterion(information: Array, free: int, prices: Array) -> float:

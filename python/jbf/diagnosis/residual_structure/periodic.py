@@ -24,6 +24,7 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.policy_residual import Ripples
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise_floor import period_samples
+from jbf.estimation.pitches import fitted_wave
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
@@ -42,18 +43,6 @@ def _sum_of_squares(residuals: Sequence[Array], samples: Samples) -> float:
     """Sum of squares of the residuals at included samples; replaced by a small value if zero."""
     squares = (np.sum(r[c] ** 2) for r, c in zip(residuals, samples.counted, strict=True))
     return max(sum(map(float, squares)), 1e-300)
-
-
-def _cosine_and_sine(phase: Array) -> Array:
-    """Cosine and sine of a phase as two columns, shape (n, 2)."""
-    return np.stack([np.cos(phase), np.sin(phase)], axis=1)
-
-
-def _fitted_wave(waves: Array, residual: Array) -> tuple[float, Array]:
-    """Amplitude and values of a cosine and a sine fitted to residuals."""
-    coefficients, *_ = np.linalg.lstsq(waves, residual, rcond=None)
-    wave: Array = waves @ coefficients
-    return float(np.hypot(*coefficients)), wave
 
 
 # ---- tones ------------------------------------------------------------------------------------
@@ -129,9 +118,7 @@ def _refine(
     nyquist = 0.5 / float(np.median(np.diff(time)))
     grid = near + width * np.linspace(-1.0, 1.0, 41)
     grid = np.clip(grid, 0.5 * width, nyquist - 0.5 * width)
-    fits = [
-        _fitted_wave(_cosine_and_sine(2.0 * np.pi * f * time[counted]), r[counted]) for f in grid
-    ]
+    fits = [fitted_wave(2.0 * np.pi * f * time[counted], r[counted]) for f in grid]
     best = int(np.argmax([float(wave @ wave) for _, wave in fits]))
     amplitude, wave = fits[best]
     return float(grid[best]), amplitude, wave
@@ -256,13 +243,13 @@ def _ripple_size(
         Share of the mean square; median amplitude over the runs, N; share of the ripple's power
         that one common phase explains.
     """
-    waves, centred = [], []
+    phases, centred = [], []
     for travel, r, counted in zip(travels, residuals, samples.counted, strict=True):
-        waves.append(_cosine_and_sine(2.0 * np.pi * travel[counted] / pitch))
+        phases.append(2.0 * np.pi * travel[counted] / pitch)
         centred.append(r[counted] - np.mean(r[counted]) if counted.any() else r[counted])
-    by_run = [_fitted_wave(w, r) for w, r in zip(waves, centred, strict=True)]
+    by_run = [fitted_wave(phase, r) for phase, r in zip(phases, centred, strict=True)]
     square = sum(float(wave @ wave) for _, wave in by_run)
-    _, common = _fitted_wave(np.concatenate(waves), np.concatenate(centred))
+    _, common = fitted_wave(np.concatenate(phases), np.concatenate(centred))
     amplitude = float(np.median([size for size, _ in by_run]))
     common_share = float(common @ common) / max(square, 1e-300)
     return square / _sum_of_squares(residuals, samples), amplitude, common_share

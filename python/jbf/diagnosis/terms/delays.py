@@ -88,13 +88,13 @@ def _estimates(model: Model) -> list[Shifted]:
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     estimates = []
     if run_delay_step(problem, solution).p_value < policy.terms.chance:
-        by_run = fit_delays_by_run(problem, start)
+        by_run = fit_delays_by_run(start)
         estimates.append(by_run if _significant(by_run, policy) else with_mean_delay(by_run))
     if not known_delays(problem.campaign):
         # The model parameters compensate for a drift: test it at a less strict significance level
         # before it is fitted (`_significant` tests it again afterwards).
         if special.chdtrc(1, drift_step(problem, solution).square) < policy.delays.hint_chance:
-            estimates.append(fit_clock_drift(problem, start))
+            estimates.append(fit_clock_drift(start))
         coarse = fit_delays_by_search(problem, solution, policy)
         if coarse is not None:
             estimates.append(fit_common_delay(problem, coarse) if coarse.drift == 0.0 else coarse)
@@ -164,13 +164,9 @@ def _log_determinant(shifted: Shifted) -> float:
 
 def _findings(before_s: dict[str, float], shifted: Shifted) -> list[Finding]:
     """Findings on the delays that changed, compared with the delays known before."""
-    delays_s = [
-        late + before_s.get(p.run.name, 0.0)
-        for p, late in zip(shifted.campaign.prepared, shifted.delays_s.tolist(), strict=True)
-    ]
     return [
-        _finding(p.run.name, late, shifted.drift)
-        for p, late in zip(shifted.campaign.prepared, delays_s, strict=True)
+        _finding(p.run.name, late + before_s.get(p.run.name, 0.0), shifted.drift)
+        for p, late in zip(shifted.campaign.prepared, shifted.delays_s.tolist(), strict=True)
     ]
 
 

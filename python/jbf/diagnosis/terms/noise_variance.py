@@ -15,8 +15,10 @@ from scipy import optimize, special
 
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term, refitted
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import robust_size
 from jbf.records.findings.finding import Finding
@@ -56,26 +58,31 @@ def _weighted(
     parameters: int,
 ) -> Proposal | None:
     """Propose weights from a variance function; None if the campaign already has them."""
-    problem, solution, policy = model.problem, model.solution, model.policy
-    campaign = model.campaign
+    problem, solution, campaign = model.problem, model.solution, model.campaign
     if any(f.kind == kind for f in campaign.more_findings):
         return None
-    estimate = weights(problem, solution, policy)
+    estimate = weights(problem, solution, model.policy)
     if estimate is None:
         return None
     levels, finding = estimate
-    ones = [np.ones(len(w)) for w in levels]
-    samples = campaign.samples.with_factors(levels, ones, campaign.samples.between)
-    counted = solution.samples.counted
-    after = refitted(problem, solution, samples.within(counted))
-    before = campaign.samples.within(counted)
+    again, after = _reweighted(model, levels, [np.ones(len(w)) for w in levels], finding)
+    before = campaign.samples.within(solution.samples.counted)
     # The likelihood of a sample has the factor 1 / (standard deviation).
     fitted = [w > 0.0 for w in after.samples.weight]
     logs = sum(float(np.sum(np.log(w[at]))) for w, at in zip(levels, fitted, strict=True))
     gain = before.cost(solution.residuals, solution.noise) - after.cost + 2.0 * logs
-    again = replace(campaign, samples=samples).with_findings([finding])
-    price = price_of_term(policy, parameters)
+    price = price_of_term(model.policy, parameters)
     return Proposal(again, problem, after, effective_share(after) * gain, price)
+
+
+def _reweighted(
+    model: Model, levels: Weights, robust: Weights, finding: Finding
+) -> tuple[Campaign, Solution]:
+    """Campaign with factors for the noise level and the heavy tails, and the model refitted."""
+    campaign, solution = model.campaign, model.solution
+    samples = campaign.samples.with_factors(levels, robust, campaign.samples.between)
+    after = refitted(model.problem, solution, samples.within(solution.samples.counted))
+    return replace(campaign, samples=samples).with_findings([finding]), after
 
 
 def heavy_tails(model: Model) -> Proposal | None:
@@ -83,8 +90,7 @@ def heavy_tails(model: Model) -> Proposal | None:
 
     Returns None if the heavy tails are due to the quantisation steps of a converter.
     """
-    problem, solution, policy = model.problem, model.solution, model.policy
-    campaign = model.campaign
+    solution, campaign, policy = model.solution, model.campaign, model.policy
     if any(f.kind == "heavy_tails" for f in campaign.more_findings):
         return None
     if campaign.step_n >= policy.noise.max_step_ratio * solution.rms:
@@ -93,13 +99,9 @@ def heavy_tails(model: Model) -> Proposal | None:
     if estimate is None:
         return None
     weights, finding, gain = estimate
-    ones = [np.ones(len(w)) for w in weights]
-    samples = campaign.samples.with_factors(ones, weights, campaign.samples.between)
-    after = refitted(problem, solution, samples.within(solution.samples.counted))
-    again = replace(campaign, samples=samples).with_findings([finding])
+    again, after = _reweighted(model, [np.ones(len(w)) for w in weights], weights, finding)
     gain *= effective_share(solution)
-    price = price_of_term(policy)
-    return Proposal(again, problem, after, gain, price)
+    return Proposal(again, model.problem, after, gain, price_of_term(policy))
 
 
 def force_weights(
@@ -136,9 +138,7 @@ def force_weights(
     low = min(float(s.min()) for s in sd)
     share = float(np.sqrt(slope))
     words = f"the noise grows with the force: {100.0 * share:.2g} % of it"
-    names = ", ".join(samples.runs)
-    finding = Finding("noise_with_force", "friction_n", names, share, "1", "weighted", words)
-    return [low / s for s in sd], finding
+    return [low / s for s in sd], _finding("noise_with_force", samples, share, words)
 
 
 def run_weights(
@@ -167,10 +167,8 @@ def run_weights(
     by_run[valid] = np.maximum(*(x[valid].min() / x[valid] for x in (white, total)))
     ratio = float(by_run.max() / by_run.min())
     words = f"the noise level differs between runs by a factor of up to {ratio:.2g}"
-    names = ", ".join(samples.runs)
-    finding = Finding("noise_by_run", "friction_n", names, ratio, "1", "weighted", words)
     weights = [np.full(len(x), w) for x, w in zip(e, by_run.tolist(), strict=True)]
-    return weights, finding
+    return weights, _finding("noise_by_run", samples, ratio, words)
 
 
 def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding, float] | None:
@@ -193,9 +191,14 @@ def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding
     limit = policy.noise.huber_sigma * sigma
     weights = [np.sqrt(np.minimum(1.0, limit / np.maximum(np.abs(x), 1e-300))) for x in e]
     words = f"{100.0 * beyond:.2g} % of the noise exceeds 4 standard deviations"
-    names = ", ".join(samples.runs)
-    finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighted", words)
+    finding = _finding("heavy_tails", samples, beyond, words)
     return weights, finding, _student_gain(flat, sigma)
+
+
+def _finding(kind: str, samples: Samples, size: float, words: str) -> Finding:
+    """Finding on the noise of all runs; `size` is a ratio or a share."""
+    runs = ", ".join(samples.runs)
+    return Finding(kind, "friction_n", runs, size, "1", "weighted", words)
 
 
 def _student_gain(innovations: Array, sigma: float) -> float:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from scipy import special
@@ -83,11 +83,8 @@ class Model:
         return self.problem.campaign
 
 
-class Term(Protocol):
-    """Estimator of one kind of term for a given model."""
-
-    def __call__(self, model: Model) -> Proposal | None:
-        """Estimate the term for a fitted model; None if not identifiable or not significant."""
+Term = Callable[[Model], Proposal | None]
+"""Estimator of one kind of term for a model; None if not identifiable or not significant."""
 
 
 def price_of_term(policy: Policy, parameters: int = 1) -> float:
@@ -115,22 +112,18 @@ def independent_fraction(after: Solution, before: Solution) -> float:
 
 
 def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0.0) -> bool:
-    """Whether a proposed term has sufficient evidence and does not increase the held-out error."""
+    """Whether a proposed term has sufficient evidence and does not increase the held-out error.
+
+    The error increases if the mean log ratio over the runs exceeds the limit of the policy by more
+    than its standard error. All runs have equal weight, so that with between-run variance the
+    largest deviation does not dominate. Delays and the quantisation bias are those of the fit to
+    all runs. A term that changes the covariance of the errors must not decrease the density of
+    held-out runs.
+    """
     if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False
-    return not predicts_worse(proposal, model)
-
-
-def predicts_worse(proposal: Proposal, model: Model) -> bool:
-    """Whether a proposed term increases the held-out error significantly.
-
-    The mean log ratio over the runs must exceed the limit of the policy by more than its standard
-    error. All runs have equal weight, so that with between-run variance the largest deviation does
-    not dominate. Delays and the quantisation bias are those of the fit to all runs. A term that
-    changes the covariance of the errors must not decrease the density of held-out runs.
-    """
     if proposal.held_out_gain is not None:
-        return proposal.held_out_gain < 0.0
+        return proposal.held_out_gain >= 0.0
     fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
         np.array([np.sqrt(np.mean(e**2)) if len(e) else np.nan for e in held_out_by_run(*fit)])
@@ -139,9 +132,9 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
     ratio = np.log(np.maximum(rms[0], 1e-300) / np.maximum(rms[1], 1e-300))
     ratio = ratio[np.isfinite(ratio)]
     if not len(ratio):
-        return False
+        return True
     error = float(np.std(ratio, ddof=1)) / np.sqrt(len(ratio)) if len(ratio) > 1 else 0.0
-    return bool(np.mean(ratio) - error > np.log(model.policy.held_out.no_worse_ratio))
+    return bool(np.mean(ratio) - error <= np.log(model.policy.held_out.no_worse_ratio))
 
 
 def refitted(problem: Problem, near: Solution, samples: Samples) -> Solution:

@@ -6,6 +6,7 @@ estimated from the runs (`estimation.random_effects`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -66,7 +67,8 @@ def without_random_effect(model: Model) -> Campaign | None:
     if gains[name] >= 0.0:
         return None
     samples = replace(campaign.samples, between=between.without(name))
-    findings = tuple(f for f in campaign.more_findings if not f.words.startswith(WHAT[name]))
+    first_words = FINDINGS[name][1].partition("{")[0]
+    findings = tuple(f for f in campaign.more_findings if not f.words.startswith(first_words))
     return replace(campaign, samples=samples, more_findings=findings)
 
 
@@ -111,7 +113,8 @@ def _most_significant(
     _, name, unit, sd, column = best
     # Exclude the between-run deviations from the noise.
     sigma = robust_size(_within_runs(samples, solution, column))
-    kind, words = _words(name, sd, unit)
+    kind, text = FINDINGS[name]
+    words = text.format(sd=sd, percent=100.0 * sd, unit=unit)
     runs = ", ".join(samples.runs)
     finding = Finding(kind, "friction_n", runs, sd, unit, "a spread of the runs", words)
     directions = [c[:, None] * sd for c in column]
@@ -136,14 +139,22 @@ def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[
     return columns
 
 
-def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> Array:
-    """Innovations of all runs without the estimated deviation of each run, N."""
-    innovations = []
+def _by_run(
+    samples: Samples, solution: Solution, column: list[Array]
+) -> Iterator[tuple[Array, Array]]:
+    """Innovations of each run, N, and the whitened derivative with respect to its deviation."""
     columns = [c[:, None] for c in column]
     for i in range(len(samples.runs)):
         r, n = samples.stacked(solution.residuals, columns, solution.noise, [i])
-        size = float(n[:, 0] @ n[:, 0])
-        innovations.append(r - n[:, 0] * (float(n[:, 0] @ r) / size if size > 0.0 else 0.0))
+        yield r, n[:, 0]
+
+
+def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> Array:
+    """Innovations of all runs without the estimated deviation of each run, N."""
+    innovations = []
+    for r, n in _by_run(samples, solution, column):
+        size = float(n @ n)
+        innovations.append(r - n * (float(n @ r) / size if size > 0.0 else 0.0))
     return np.concatenate(innovations)
 
 
@@ -161,38 +172,33 @@ def _spread(
     if sigma**2 == 0.0:
         return None
     estimates, precisions = [], []
-    columns = [c[:, None] for c in column]
-    for i in range(len(samples.runs)):
-        r, n = samples.stacked(solution.residuals, columns, solution.noise, [i])
-        size = float(n[:, 0] @ n[:, 0]) / sigma**2
+    for r, n in _by_run(samples, solution, column):
+        size = float(n @ n) / sigma**2
         if size <= 0.0:
             continue
-        estimates.append(float(n[:, 0] @ r) / sigma**2 / size)
+        estimates.append(float(n @ r) / sigma**2 / size)
         precisions.append(size)
     if len(estimates) < samples.settings.variance.min_runs:
         return None
     return spread_between(np.array(estimates), np.array(precisions))
 
 
-WHAT = {
-    "zero": "offset differs",
-    "drift": "offset drifts",
-    "gain": "gain differs",
-    "U_tr_m_s": "transition speed differs",
-    "gamma": "viscous friction differs",
+FINDINGS = {
+    "zero": ("level_by_run", "offset differs between runs by {sd:.2g} {unit} (1 s.d.)"),
+    "drift": (
+        "drift_by_run",
+        "offset drifts differently in each run, by {sd:.2g} {unit} (1 s.d.)",
+    ),
+    "gain": ("gain_by_run", "gain differs between runs by {percent:.2g} % (1 s.d.)"),
+    "U_tr_m_s": (
+        "oil_by_run",
+        "transition speed differs between runs by {percent:.2g} % (1 s.d.); check the oil "
+        "temperature",
+    ),
+    "gamma": (
+        "oil_by_run",
+        "viscous friction differs between runs by {percent:.2g} % (1 s.d.); check the oil "
+        "temperature",
+    ),
 }
-"""First words of the finding on each random effect, by the name of the random effect."""
-
-
-def _words(name: str, sd: float, unit: str) -> tuple[str, str]:
-    """Kind and text of the finding on a random effect with a given standard deviation."""
-    what = WHAT[name]
-    if name == "zero":
-        return "level_by_run", f"{what} between runs by {sd:.2g} {unit} (1 s.d.)"
-    if name == "drift":
-        return "drift_by_run", f"{what} differently in each run, by {sd:.2g} {unit} (1 s.d.)"
-    if name == "gain":
-        return "gain_by_run", f"{what} between runs by {100.0 * sd:.2g} % (1 s.d.)"
-    return "oil_by_run", (
-        f"{what} between runs by {100.0 * sd:.2g} % (1 s.d.); check the oil temperature"
-    )
+"""Kind and text of the finding on each random effect; no two texts begin with the same words."""

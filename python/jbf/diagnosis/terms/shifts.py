@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,6 @@ from jbf.estimation.delay_scan import scan_delays
 from jbf.estimation.delays import drift_step, run_delay_step
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
-from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
@@ -76,20 +76,17 @@ def possible_clocks(problem: Problem, delays_s: Array, drift: float) -> bool:
 
 
 def moved(problem: Problem, delays_s: Array, drift: float) -> Campaign:
-    """Shift the force of each run to earlier times, by its delay and the clock drift."""
-    prepared = problem.campaign.prepared
-    return _settled(
-        problem,
-        [p.shifted(late, drift) for p, late in zip(prepared, delays_s.tolist(), strict=True)],
-    )
+    """Shift the force of each run to earlier times, by its delay and the clock drift.
 
-
-def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
-    """Campaign of shifted runs, with the initial-state transients excluded again."""
+    The initial-state transients of the shifted runs are excluded again.
+    """
     old = problem.campaign
+    prepared = tuple(
+        p.shifted(late, drift) for p, late in zip(old.prepared, delays_s.tolist(), strict=True)
+    )
     shifted = replace(
         old,
-        prepared=tuple(prepared),
+        prepared=prepared,
         samples=Samples.of(prepared, old.settings),
         more_findings=tuple(f for f in old.more_findings if f.done == "left out"),
     )
@@ -103,45 +100,34 @@ def without_delay(effects: Names) -> Names:
 
 def fitted_to_shifted(
     problem: Problem,
-    campaign: Campaign,
+    delays_s: Array,
+    drift: float,
     effects: Names,
     start_values: dict[str, float],
     near: Solution,
-) -> tuple[Problem, Solution]:
-    """Fit a law with effects to the shifted runs of `campaign` by a few steps."""
-    again = Problem(campaign, problem.law, problem.clock, effects)
+) -> Shifted:
+    """Shift the runs of a model and fit its law with effects to them by a few steps."""
+    again = Problem(moved(problem, delays_s, drift), problem.law, problem.clock, effects)
     start = np.array([start_values[name] for name in again.names])
     samples = again.samples_at(start)
     end = search(again, samples, start, near.noise, EVALUATIONS)
     solution = again.solution(end.values, samples, near.noise, end.converged, end.message)
-    return again, solution
+    return Shifted(again, solution, delays_s, drift)
 
 
-def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
-    """Estimate the delay of each run jointly with the model.
+def fit_delays_by_run(start: Shifted) -> Shifted:
+    """Estimate the delay of each run jointly with the model of shifted or unshifted runs.
 
     Returns `start` if the fit does not improve, or if a delay is not plausible.
-
-    Parameters
-    ----------
-    first
-        Model of the unshifted runs.
-    start
-        Model of the runs shifted by the known delays.
     """
-    settings = first.campaign.settings.delays
+    settings = start.campaign.settings.delays
     linear_s = settings.linear_s
-    # The error due to a delay is autocorrelated and would be attributed to coloured noise.
-    now = replace(start, solution=replace(start.solution, noise=WHITE))
-    white = True
-    for _ in range(STEPS):
+
+    def advance(now: Shifted) -> Shifted | None:
+        """Fit after one step; the same fit if it converged, None if a delay is not plausible."""
         step = run_delay_step(now.problem, now.solution)
         if step.square <= SETTLED**2 * np.sum(step.identifiable):
-            if not white:
-                break
-            white = False
-            now = _with_coloured_noise(now)
-            continue
+            return now
         # Where delays differ between runs, a common delay is also attributed to the recording.
         values = now.problem.values_by_name(now.solution.values)
         later_s = np.clip(step.delays_s, -linear_s, linear_s) + values.get(TAU, 0.0)
@@ -149,60 +135,62 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
         delays_s[~step.identifiable] = step.mean_s(delays_s)
         apart_s = float(np.max(np.abs(delays_s - np.median(delays_s))))
         if apart_s > settings.search_ranges_s[0][0] or not possible_clocks(
-            first, delays_s, start.drift
+            start.problem, delays_s, start.drift
         ):
             # Another deviation of one run, such as a mass, may appear as a delay of any size.
-            return start
-        campaign = moved(first, delays_s, start.drift)
+            return None
         effects = without_delay(now.problem.effects)
-        problem, solution = fitted_to_shifted(now.problem, campaign, effects, values, now.solution)
-        now = Shifted(problem, solution, delays_s, start.drift)
-    if white:
-        now = _with_coloured_noise(now)
-    return now if now.solution.rms < start.solution.rms else start
+        change_s = delays_s - start.delays_s
+        after = fitted_to_shifted(start.problem, change_s, 0.0, effects, values, now.solution)
+        return replace(after, delays_s=delays_s, drift=start.drift)
+
+    return _iterated(start, advance)
 
 
-def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
+def fit_clock_drift(start: Shifted) -> Shifted:
     """Estimate the drift of a clock that is reset at the start of each run, jointly with the model.
 
-    Returns `start` if the fit does not improve, or if the drift is not plausible.
+    Returns `start`, the model of the unshifted runs, if the fit does not improve, or if the drift
+    is not plausible.
     """
-    lasts_s = np.array([p.run.duration_s for p in first.campaign.prepared])
-    most = first.campaign.settings.delays.linear_s / float(np.max(lasts_s))
-    now = replace(start, solution=replace(start.solution, noise=WHITE))
-    white = True
-    for _ in range(STEPS):
+    lasts_s = np.array([p.run.duration_s for p in start.campaign.prepared])
+    most = start.campaign.settings.delays.linear_s / float(np.max(lasts_s))
+
+    def advance(now: Shifted) -> Shifted | None:
+        """Fit after one step; the same fit if it converged, None if the drift is not plausible."""
         step = drift_step(now.problem, now.solution)
         if step.square <= SETTLED**2:
-            if not white:
-                break
-            white = False
-            now = _with_coloured_noise(now)
-            continue
+            return now
         drift = now.drift + float(np.clip(step.drift, -most, most))
         delays_s = 0.5 * drift * lasts_s
-        if not possible_clocks(first, delays_s, drift):
+        if not possible_clocks(start.problem, delays_s, drift):
+            return None
+        values, effects = now.problem.values_by_name(now.solution.values), now.problem.effects
+        return fitted_to_shifted(start.problem, delays_s, drift, effects, values, now.solution)
+
+    return _iterated(start, advance)
+
+
+def _iterated(start: Shifted, advance: Callable[[Shifted], Shifted | None]) -> Shifted:
+    """Repeat a joint Gauss-Newton step, with white noise and then with coloured noise.
+
+    Returns `start` if the residual does not decrease, or if a step returns None.
+    """
+    # The error due to a delay is autocorrelated and would be attributed to coloured noise.
+    now, white = replace(start, solution=replace(start.solution, noise=WHITE)), True
+    for _ in range(STEPS):
+        after = advance(now)
+        if after is None:
             return start
-        values = now.problem.values_by_name(now.solution.values)
-        campaign = moved(first, delays_s, drift)
-        problem, solution = fitted_to_shifted(
-            now.problem, campaign, now.problem.effects, values, now.solution
-        )
-        now = Shifted(problem, solution, delays_s, drift)
+        if after is not now:
+            now = after
+        elif white:
+            now, white = _with_coloured_noise(now), False
+        else:
+            break
     if white:
         now = _with_coloured_noise(now)
     return now if now.solution.rms < start.solution.rms else start
-
-
-def with_mean_delay(shifted: Shifted) -> Shifted:
-    """Replace the delays of the runs by their mean, and refit the model."""
-    problem, solution = shifted.problem, shifted.solution
-    mean_s = run_delay_step(problem, solution).mean_s(shifted.delays_s)
-    change_s = mean_s - shifted.delays_s
-    values = problem.values_by_name(solution.values)
-    campaign = moved(problem, change_s, 0.0)
-    again, fit = fitted_to_shifted(problem, campaign, problem.effects, values, solution)
-    return Shifted(again, fit, np.full(len(change_s), mean_s), shifted.drift)
 
 
 def _with_coloured_noise(shifted: Shifted) -> Shifted:
@@ -212,32 +200,38 @@ def _with_coloured_noise(shifted: Shifted) -> Shifted:
     return replace(shifted, solution=problem.solution(values, samples, noise))
 
 
+def with_mean_delay(shifted: Shifted) -> Shifted:
+    """Replace the delays of the runs by their mean, and refit the model."""
+    problem, solution = shifted.problem, shifted.solution
+    mean_s = run_delay_step(problem, solution).mean_s(shifted.delays_s)
+    change_s = mean_s - shifted.delays_s
+    values = problem.values_by_name(solution.values)
+    again = fitted_to_shifted(problem, change_s, 0.0, problem.effects, values, solution)
+    return replace(again, delays_s=np.full(len(change_s), mean_s), drift=shifted.drift)
+
+
 def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """Shift each run repeatedly to the delay with the smallest sum of squares (`scan_delays`).
 
     Returns None if no delay is corrected.
     """
-    campaign = problem.campaign
-    old, first = campaign, problem
-    delays_s, drift = np.zeros(len(campaign.prepared)), 0.0
+    now = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     for look in range(policy.delays.max_searches):
-        scan = scan_delays(problem, solution, look, policy.terms.chance)
+        scan = scan_delays(now.problem, now.solution, look, policy.terms.chance)
         if scan is None:
             break
         # Where delays differ between runs, a common delay is also attributed to the recording.
-        values = problem.values_by_name(solution.values)
-        shared = values.get(TAU, 0.0) if scan.spread_s > 0.0 else 0.0
-        later_s, drifted = delays_s + np.array(scan.delays_s) + shared, drift + scan.drift
+        values = now.problem.values_by_name(now.solution.values)
+        shared_s = values.get(TAU, 0.0) if scan.spread_s > 0.0 else 0.0
+        delays_s, drift = now.delays_s + np.array(scan.delays_s) + shared_s, now.drift + scan.drift
         if look > 0 and scan.drift != 0.0 and scan.spread_s == 0.0:
             # The drift was already corrected at the middle of the runs.
-            later_s = delays_s
-        if not possible_clocks(first, later_s, drifted):
+            delays_s = now.delays_s
+        if not possible_clocks(problem, delays_s, drift):
             break
-        delays_s, drift = later_s, drifted
-        campaign = moved(first, delays_s, drift)
-        effects = without_delay(problem.effects)
-        problem, solution = fitted_to_shifted(problem, campaign, effects, values, solution)
-    return None if campaign is old else Shifted(problem, solution, delays_s, drift)
+        effects = without_delay(now.problem.effects)
+        now = fitted_to_shifted(problem, delays_s, drift, effects, values, now.solution)
+    return None if now.problem is problem else now
 
 
 def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
@@ -249,22 +243,13 @@ def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     """
     steps = [p.step_s for p in problem.campaign.prepared]
     ahead_s = max(problem.campaign.settings.delays.reserve_s, float(np.median(steps)))
-    delays_s = shifted.delays_s - ahead_s
-    campaign = moved(problem, delays_s, 0.0)
-    effects = without_delay(problem.effects)
-    late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
-    last = Problem(shifted.campaign, problem.law, problem.clock, effects)
-    start_values = {**last.values_by_name(shifted.solution.values), TAU: ahead_s}
-    start = np.array([start_values[name] for name in late.names])
-    samples = late.samples_at(start)
-    values = search(late, samples, start, shifted.solution.noise, EVALUATIONS).values
-    shared_s = float(values[late.names.index(TAU)]) - ahead_s
-    delays_s = shifted.delays_s + shared_s
+    effects, near = without_delay(problem.effects), shifted.solution
+    values = {**shifted.problem.values_by_name(near.values), TAU: ahead_s}
+    earlier_s = shifted.delays_s - ahead_s
+    late = fitted_to_shifted(problem, earlier_s, 0.0, (*effects, DELAY), values, near)
+    values = late.problem.values_by_name(late.solution.values)
+    delays_s = shifted.delays_s + (values[TAU] - ahead_s)
     if not possible_clocks(problem, delays_s, 0.0):
         return shifted
-    campaign = moved(problem, delays_s, 0.0)
-    near = late.values_by_name(values)
-    again, solution = fitted_to_shifted(problem, campaign, effects, near, shifted.solution)
-    if solution.rms >= shifted.solution.rms:
-        return shifted
-    return Shifted(again, solution, delays_s, 0.0)
+    again = fitted_to_shifted(problem, delays_s, 0.0, effects, values, near)
+    return again if again.solution.rms < near.rms else shifted

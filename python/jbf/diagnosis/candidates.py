@@ -350,14 +350,8 @@ class Candidates:
     ) -> list[HeldOutPart]:
         """Held-out predictions of all runs, each from a fit to the other runs.
 
-        Parameters
-        ----------
-        effects
-            Effects of the model.
-        halved
-            Indices of runs of which two parts are held out in turn instead of the complete run.
-        alternate
-            Use alternate sections as parts in place of halves.
+        Two parts of each run in `halved` (indices) are held out in turn instead of the complete
+        run: its halves, or `alternate` sections.
         """
         solution, fitted = self.converge(effects), self.fitted(effects)
         if not fitted.held_out:

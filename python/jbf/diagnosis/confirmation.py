@@ -64,16 +64,8 @@ class Confirmation:
     ) -> Confirmation:
         """Compare two fitted models, without and with the candidate, by their held-out predictions.
 
-        Parameters
-        ----------
-        simpler, richer
-            Solutions without and with the candidate.
-        held_out, richer_held_out
-            Held-out predictions of the two models.
-        halved
-            Names of the runs with held-out halves.
-        prepared
-            The prepared runs; their strokes are the units if there are too few runs.
+        `halved` has the names of the runs with held-out halves. The strokes of the runs `prepared`
+        are the units if there are too few runs.
         """
         settings = simpler.samples.settings.held_out
         # Compare on common samples: a model may exclude those next to its jumps.

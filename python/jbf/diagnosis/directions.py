@@ -70,17 +70,10 @@ class Directions:
     ) -> Directions:
         """Compute the score directions of an effect from the whitened rows of a likelihood.
 
-        Parameters
-        ----------
-        innovations
-            Innovations of the model without the effect, shape (n,).
-        effect, law
-            Derivatives with respect to the parameters of the effect, shape (n, k), and to those of
-            the model without it.
-        samples
-            Samples to which the rows belong.
-        share
-            Ratio of the effective number of samples to the number of samples.
+        `innovations`, shape (n,), are those of the model without the effect at the `samples`.
+        `effect` and `law` are the derivatives with respect to the parameters of the effect, shape
+        (n, k), and to those of the model without it. `share` is the effective number of samples
+        divided by their number.
         """
         part = unexplained(law, effect)
         length = np.linalg.norm(part, axis=0)
@@ -98,15 +91,9 @@ class Directions:
     def by_block(self, innovations: Array, blocks: Places) -> Array:
         """Sums of the scores of given innovations over each block, shape (blocks, k).
 
-        The innovations are the residual without the part that candidates could explain. Scores have
-        unit variance in noise with the assumed autocorrelation.
-
-        Parameters
-        ----------
-        innovations
-            Innovations, shape (n,).
-        blocks
-            First row of each block.
+        The innovations, shape (n,), are the residual without the part that candidates could
+        explain; `blocks` has the first row of each block. Scores have unit variance in noise with
+        the assumed autocorrelation.
         """
         scores: Array = np.add.reduceat(self.basis * innovations[:, None], blocks, axis=0)
         return scores * np.sqrt(self.shares)
@@ -145,14 +132,9 @@ class RichestResidual:
 
     @classmethod
     def of(cls, directions: Sequence[Directions], samples: Samples) -> RichestResidual | None:
-        """Remove the span of all score directions; None without a direction.
+        """Remove the span of all score directions from the innovations; None without a direction.
 
-        Parameters
-        ----------
-        directions
-            Score directions of the candidates.
-        samples
-            The samples of the model to which the candidates were added.
+        `samples` are those of the model to which the candidates were added.
         """
         tested = largest_common_group([d for d in directions if d.basis.size])
         if not tested:

@@ -148,14 +148,8 @@ class Remainder:
 def with_final_outcomes(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
     """Return the ledger with the final outcome of each added effect.
 
-    Parameters
-    ----------
-    steps
-        The ledger.
-    present
-        Effects of the final model.
-    doubted
-        Effects of the final model that are not named, because they may be confounders.
+    The final model has the effects `present`. Those in `doubted` are not named, because they may be
+    confounders.
     """
 
     def final_outcome(trial: Trial) -> Trial:

@@ -1,19 +1,14 @@
 """Acceptance threshold for the gain of an effect, from the false-alarm rate of a campaign.
 
-The false-alarm rate is the fraction of campaigns without a missing effect in which any candidate
-may be named. The Bonferroni correction for the number of candidates gives the significance level of
-a single gain. If the residual of the campaign gives large gains more often, this level is reduced
-until the rate is attained. For this purpose the signs of the residual are reversed block by block
-(wild bootstrap: Wu 1986; of blocks: Shao 2010). The reversal preserves the variance, tails and
+The Bonferroni correction for the number of candidates gives the significance level of a single
+gain. If the residual of the campaign gives large gains more often, this level is reduced until the
+rate is attained. For this purpose the signs of the residual are reversed block by block (wild
+bootstrap: Wu 1986; of blocks: Shao 2010). The reversal preserves the variance, tails and
 autocorrelation of the residual and removes the contribution of any effect.
 
-Recordings have artefacts that no finding reports. The gain of an effect must therefore exceed the
-larger of two limits. The first is the gain in white noise plus an artefact margin from simulated
-recordings without missing effects. The second is the gain in the residual of the campaign, which
-contains its artefacts.
-
-A significant effect below the minimum effect size is not named, since with enough samples any model
-is rejected.
+The margin for recording artefacts is added to the gain in white noise only, since the residual of
+the campaign contains its artefacts. A significant effect below the minimum effect size is not
+named, since with enough samples any model is rejected.
 """
 
 from __future__ import annotations
@@ -92,18 +87,8 @@ class Level:
     ) -> Level:
         """Return the threshold in white noise; the candidates share the false-alarm rate.
 
-        The significance level of one candidate follows by the Bonferroni correction.
-
-        Parameters
-        ----------
-        policy
-            False-alarm rate, artefact margin and minimum effect size.
-        candidates
-            Number of candidate effects.
-        samples
-            Number of independent samples.
-        noise_rms
-            RMS of the residual, N.
+        The significance level of one candidate follows by the Bonferroni correction. `samples` is
+        the number of independent samples, and `noise_rms` the RMS of the residual, N.
         """
         least = max(policy.min_effect_share, policy.min_effect / max(noise_rms, 1e-300))
         chance = policy.false_alarm_rate / max(candidates, 1)
@@ -168,25 +153,13 @@ def score_test(
 ) -> tuple[float, Directions, Array]:
     """Score test of added effects at several starting values equivalent to a smaller model.
 
-    The starting values with the largest predicted gain are used. With more samples than a search
-    needs, the Jacobian is computed from selected runs (`Problem.searched`).
+    At each of the values `starts`, the effects `added` have no influence on the model `problem`;
+    `near` is the solution of the smaller model. The starting values with the largest predicted gain
+    are used. With more samples than a search needs, the Jacobian is computed from selected runs
+    (`Problem.searched`).
 
-    Parameters
-    ----------
-    problem
-        Model with the added effects.
-    starts
-        Parameter values at which the added effects have no influence.
-    near
-        Solution of the smaller model.
-    added
-        Names of the added effects.
-
-    Returns
-    -------
-    tuple
-        The predicted gain (`score_gain`), the score directions of the added effects, and the
-        parameter values after one step from the selected starting values.
+    Returns the predicted gain (`score_gain`), the score directions of the added effects, and the
+    parameter values after one step from the selected starting values.
     """
     thinned = problem.thinned
     # Samples next to jumps, which the smaller model excludes, would favour any effect.
@@ -223,14 +196,10 @@ def calibrated(
 ) -> Level:
     """Reduce the significance level until sign-reversed residuals attain the false-alarm rate.
 
-    Some candidates have no score direction, for example an effect that shifts friction jumps in
-    time, whose derivative at the null is zero. For these, and for candidates with other samples,
-    the Bonferroni correction is used.
-
-    Parameters
-    ----------
-    residual
-        Residual without the part that candidates could explain, which is under test.
+    The `residual` excludes the part that candidates could explain, which is under test. Some
+    candidates have no score direction, for example an effect that shifts friction jumps in time,
+    whose derivative at the null is zero. For these, and for candidates with other samples, the
+    Bonferroni correction is used.
     """
     tested = largest_common_group([d for d in directions if d.basis.size])
     if not tested or residual is None:

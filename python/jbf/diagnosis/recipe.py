@@ -224,16 +224,8 @@ def _diagnose(
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
     """Whether a further law may predict better than the best diagnosed law with its effects.
 
-    Parameters
-    ----------
-    law
-        Name of the further law, which is evaluated without effects.
-    best
-        Diagnosis of the best law so far.
-    laws
-        Held-out errors of all laws without effects.
-    margin
-        Factor by which the held-out RMS of the further law must be smaller.
+    `laws` has the held-out errors of all laws without effects. The held-out RMS of the further law
+    must be smaller by the factor `margin`.
     """
     alone = {t.law: t.held_out_rms for t in laws}
     first, last = best.steps[0], best.steps[-1]
@@ -273,13 +265,7 @@ def _with_law(
     *,
     given: bool,
 ) -> Diagnosis:
-    """Diagnose the runs with one law.
-
-    Parameters
-    ----------
-    given
-        Whether the user chose the law; if so, a simpler law is also sought.
-    """
+    """Diagnose the runs with one law; if the user chose it (`given`), also find a simpler one."""
     begun = time.monotonic()
     campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)

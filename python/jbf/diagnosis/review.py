@@ -107,12 +107,8 @@ def reconsider(
     """Remove unnecessary effects, and replace an effect if another one has more evidence.
 
     The review is repeated until the model no longer changes, or an earlier one recurs, since a
-    replacement may make further effects unnecessary.
-
-    Parameters
-    ----------
-    unconfirmed
-        Effects that held-out runs did not confirm in this round; not used as replacements.
+    replacement may make further effects unnecessary. Effects that held-out runs did not confirm in
+    this round (`unconfirmed`) are not used as replacements.
     """
     seen = [present]
     while (current := _reviewed_once(candidates, seen[-1], unconfirmed)) not in seen:
@@ -156,22 +152,12 @@ def swap_costs(
 ) -> dict[str, float]:
     """Loss of evidence if one effect of the current model is replaced, by name of the replacement.
 
-    A loss is an upper limit if the search was ended, because the loss could not fall below
-    `max_loss` or, with `only_best`, below that of another replacement.
+    `rest` has the other effects of the current model, and `others` the names of the replacements.
+    `current` and `near` are the solutions of the current model and of that with the effects `rest`.
 
-    Parameters
-    ----------
-    rest
-        Effects of the current model without the replaced one.
-    others
-        Names of the replacements.
-    current, near
-        Solutions of the current model and of that with the effects `rest`.
-    max_loss
-        Loss above which a replacement is not fitted further; negative if only a gain is of
-        interest.
-    only_best
-        Whether only the replacement with the smallest loss is of interest.
+    A loss is an upper limit if the search was ended, because the loss could not fall below
+    `max_loss` (negative if only a gain is of interest) or, with `only_best`, below that of another
+    replacement.
     """
     # Fewer samples are independent where the residual of `current` is correlated.
     share = candidates.independent_share(current)

@@ -25,10 +25,7 @@ Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
 LESS = 0.95
-"""Ratio of RMS values, with to without a candidate, from which the ledger reports a better fit.
-
-It affects the text only.
-"""
+"""Ratio of RMS values, with to without a candidate, from which the ledger reports a better fit."""
 CHANCE = "no significant gain"
 SLIGHT = "significant, but within the margin for recording artefacts"
 SMOOTH = "fits better, but the residual is so strongly correlated that this may be chance"
@@ -78,14 +75,9 @@ class Round:
 def try_candidates(candidates: Candidates, present: Names, follow: Follow = "promising") -> Round:
     """Test every candidate in addition to the present effects, and select the one to add.
 
-    Parameters
-    ----------
-    candidates, present
-        Cached fits, and the effects of the present model.
-    follow
-        Candidates to fit: those with a sufficient score (`shown`), of these only the ones that may
-        still lead after a few steps (`promising`), or all. For a strong effect, the score at its
-        null may be uninformative.
+    `follow` selects the candidates to fit: those with a sufficient score (`shown`), of these only
+    the ones that may still lead after a few steps (`promising`), or all. For a strong effect, the
+    score at its null may be uninformative.
     """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force

@@ -36,14 +36,9 @@ LEVEL, STIFFNESS = "F_c", "sigma_0"
 def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
     """Return the verdict on a campaign (`adequate`, `missing`, `ambiguous` or `unexplained`).
 
-    Parameters
-    ----------
-    effects
-        Number of added effects.
-    alternatives
-        Number of those that are confounded with another effect.
-    remains
-        Whether there is residual structure that no effect explains.
+    `effects` is the number of added effects, `alternatives` the number of those that are confounded
+    with another effect. `remains` states whether there is residual structure that no effect
+    explains.
     """
     if remains:
         return "unexplained"
@@ -56,12 +51,8 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
     """Find the effects that are not named because they may imitate another mechanism.
 
     These are effects whose parameters differ between runs, and effects of weak evidence that
-    explain less than the largest residual structure and may imitate a part of it.
-
-    Parameters
-    ----------
-    remains
-        Residual structure of the model with the present effects.
+    explain less than the largest residual structure of the model (`remains`) and may imitate a part
+    of it.
     """
     full, problem = candidates.converge(present), candidates.fitted(present).problem
     share, policy = candidates.independent_share(full), candidates.policy
@@ -127,10 +118,7 @@ def limitations(
 ) -> tuple[str, ...]:
     """Describe each conclusion that the recorded motions do not support, for any model.
 
-    Parameters
-    ----------
-    parameters
-        Fitted values by name; those of a bristle law give the presliding displacement.
+    The fitted parameters of a bristle law give the presliding displacement.
     """
     quantities = campaign.rig.quantities
     speed = campaign.samples.flat([p.motion.velocity for p in campaign.prepared])

@@ -37,10 +37,7 @@ REST_S = 8.0
 USUAL_RATE_RAD_S = 2.0
 """Angular frequency of the sine that defines a default acceleration. It enters no verdict."""
 REACH = 0.98
-"""Share of the travel limit that a motion may cover; the rest is a margin for sampling errors.
-
-It enters no verdict.
-"""
+"""Share of the travel limit that a motion may cover; the rest is a margin for sampling errors."""
 MOST = 1e6
 """Upper limit of any speed, acceleration or load of a rig, SI units. It only limits the input."""
 LONGEST_S = 86400.0
@@ -158,16 +155,10 @@ class Excitation:
 
 
 def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
-    """Generate motions within the limits of a rig; each begins at rest.
+    """Generate motions within the limits of a rig at a sampling interval, s; each begins at rest.
 
-    Parameters
-    ----------
-    limits
-        Limits without None; only the travel may be None, which does not limit the path.
-    step_s
-        Sampling interval, s.
-    speed_unit
-        Unit of the speed in the descriptions.
+    Only the travel among the limits may be None; the path is then unlimited. The descriptions
+    contain the unit of the speed.
     """
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
     temperatures = (
@@ -207,18 +198,10 @@ def _within(path: Array, travel: float) -> bool:
 def _motions(
     t: Array, top: float, acceleration: float, reach: float, unit: str
 ) -> Iterator[tuple[str, Array]]:
-    """Generate motions with their descriptions, as pairs of text and velocity.
+    """Generate motions over the time `t`, s, as pairs of description and velocity.
 
-    Parameters
-    ----------
-    t
-        Time, s.
-    top, acceleration
-        Largest speed and acceleration.
-    reach
-        Largest distance to cover; the speed is reduced to comply with it where that is possible.
-    unit
-        Unit of the speed in the descriptions.
+    `top` is the largest speed, and `unit` its unit in the descriptions. `reach` is the largest
+    distance to cover; the speed is reduced to comply with it where that is possible.
     """
     duration = float(t[-1]) if len(t) else 0.0
     # The start lasts long enough that its acceleration is at most half of the limit.
@@ -320,14 +303,8 @@ def runs_to_play(
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
     """Generate every motion within the limits, with its run and the input of a model.
 
-    Parameters
-    ----------
-    rig, limits
-        The rig, and its limits without None.
-    step_s
-        Sampling interval, s.
-    linear
-        Whether the motion is that of a slide, with positions in place of angles.
+    The limits are those of the rig, without None; `step_s` is the sampling interval, s. The runs of
+    a slide (`linear`) have positions in place of angles.
     """
     for excitation in excitations(limits, step_s, rig.quantities.speed):
         run = run_from_motion(rig, excitation, step_s, linear=linear)

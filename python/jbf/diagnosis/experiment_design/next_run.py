@@ -35,10 +35,7 @@ Names = tuple[str, ...]
 LEAST_SAMPLES = 200
 """Smallest number of samples of a proposed run. It enters no verdict."""
 NO_NOISE = 1e-100
-"""Positive lower limit of the noise that avoids a division by zero.
-
-It is a numerical tolerance.
-"""
+"""Positive lower limit of the noise that avoids a division by zero."""
 
 
 @dataclass(frozen=True)
@@ -96,17 +93,9 @@ class Rival:
 
         The refit uses the new motion and the present runs (T-optimality, Atkinson & Fedorov 1975;
         here to first order). The part of the difference that the parameters of this model can
-        reproduce is excluded.
-
-        Parameters
-        ----------
-        prediction
-            Friction of this model under the new motion and its derivatives, from `predict`.
-        truth
-            Friction of the other model, N.
-
-        step_s
-            Sampling interval of the motion, s.
+        reproduce is excluded. `prediction` is the friction of this model under the new motion and
+        its derivatives (`predict`), `truth` the friction of the other model, N, and `step_s` the
+        sampling interval, s.
         """
         noise = self.solution.noise
         gap = noise.innovations(truth - prediction[0], step_s)
@@ -164,19 +153,8 @@ def propose(
 ) -> Experiment | str:
     """Propose the run that best discriminates between rival models, or explain why none does.
 
-    Parameters
-    ----------
-    candidates
-        The fits of the present runs.
-    rivals
-        Groups of models, each a tuple of effects; all models of a group fit equally well.
-    limits
-        Limits of the rig; by default those of the runs.
-
-    Returns
-    -------
-    Experiment or str
-        The proposed run, or the reason why no run within the limits discriminates.
+    `rivals` are groups of models, each a tuple of effects; all models of a group fit equally well.
+    The default limits are those of the runs.
     """
     every = [effects for group in rivals for effects in group]
     missing = missing_columns(name for effects in every for name in effects)
@@ -261,10 +239,7 @@ def propose_detection_run(
 ) -> Experiment | str:
     """Propose the run that makes most of the presently undetectable effects `hidden` detectable.
 
-    Returns
-    -------
-    Experiment or str
-        The proposed run, or the reason why no motion within the limits shows the effects.
+    Returns the reason if no motion within the limits shows the effects.
     """
     filled, step_s = filled_limits(candidates, limits)
     candidates.converge(present)

@@ -43,20 +43,11 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 ENOUGH, MORE = 4.0, 0.05
-"""Information on an effect, in multiples of its threshold, that suffices; weight of any excess.
-
-It enters no verdict.
-"""
+"""Information on an effect, in multiples of its threshold, that suffices; weight of any excess."""
 LEAST_RUNS = 3
-"""Smallest number of runs; fewer are not enough for a prediction of a held-out run.
-
-It only limits the input.
-"""
+"""Smallest number of runs; fewer are not enough for a prediction of a held-out run."""
 MOST_RUNS = 200
-"""Largest number of runs; more are not practical, and each is simulated.
-
-It only limits the input.
-"""
+"""Largest number of runs; more are not practical, and each is simulated."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -241,23 +232,10 @@ def _motion_information(
 
 
 def _chosen(information: Sequence[Array], free: int, prices: Array, count: int) -> list[int]:
-    """Choose motions one by one to maximise their joint design criterion.
+    """Choose `count` motions one by one, with repetitions, to maximise their joint criterion.
 
-    Parameters
-    ----------
-    information
-        Fisher information of each motion.
-    free
-        Number of parameters of the law, the first rows of the information.
-    prices
-        Thresholds for the gains of the effects, shape (e,).
-    count
-        Number of motions to choose, with repetitions.
-
-    Returns
-    -------
-    list of int
-        Indices of the chosen motions.
+    `information` is the Fisher information of each motion; the criterion is `_design_criterion`,
+    with its arguments. Returns the indices of the chosen motions.
     """
     chosen: list[int] = []
 
@@ -276,18 +254,11 @@ def _chosen(information: Sequence[Array], free: int, prices: Array, count: int) 
 def _design_criterion(information: Array, free: int, prices: Array) -> float:
     """Design criterion of a set of motions: larger where each effect is more clearly detectable.
 
-    The information on an effect, less the part shared with the law and with the most similar
-    effect, is divided by the effect's threshold. The criterion is the sum of ``log(1 + min(m,
-    ENOUGH))`` over these multiples m, plus `MORE` times the logarithm of any excess.
-
-    Parameters
-    ----------
-    information
-        Fisher information of the motions, shape (free + e, free + e).
-    free
-        Number of parameters of the law, the first rows of the information.
-    prices
-        Thresholds for the gains of the effects, shape (e,).
+    The first `free` rows of the Fisher information, shape (free + e, free + e), belong to the law,
+    the others to e effects with thresholds `prices`, shape (e,). The information on an effect, less
+    the part shared with the law and with the most similar effect, is divided by its threshold. The
+    criterion is the sum of ``log(1 + min(m, ENOUGH))`` over these multiples m, plus `MORE` times
+    the logarithm of any excess.
     """
     of_law, of_effects = information[:free, :free], information[free:, free:]
     covariance = np.linalg.pinv(of_law, rcond=1e-10, hermitian=True)

@@ -31,20 +31,11 @@ LEVELS = (0.80, 0.95)
 MOST_STRENGTHS = 14
 """Largest number of strengths evaluated for each detection limit. It limits the effort only."""
 EXPONENTS = (1.0, 8.0)
-"""Range of the exponents with which the non-centrality may grow with strength.
-
-It bounds a search only.
-"""
+"""Range of the exponents with which the non-centrality may grow with strength."""
 AGREES = 0.05
-"""Relative difference in strength at which the search ends; the power law gives the rest.
-
-It is a numerical tolerance.
-"""
+"""Relative difference in strength at which the search ends; the power law gives the rest."""
 NEARLY_ALL = 0.97
-"""Share of a gain that must remain after a refit of the noise model to be treated as unchanged.
-
-It enters no verdict.
-"""
+"""Share of a gain that must remain after a refit of the noise model to be treated as unchanged."""
 BEYOND = 1.2
 """Factor on the detectable strength at which the share compared with `NEARLY_ALL` is evaluated.
 
@@ -52,10 +43,7 @@ It avoids a strength at which the colour of the noise just reaches its threshold
 verdict.
 """
 MOST_ITERATIONS = 3
-"""Iterations of the distinguishable strength for effects that shift friction jumps.
-
-It limits the effort only.
-"""
+"""Iterations of the distinguishable strength for effects that shift friction jumps."""
 
 
 @dataclass(frozen=True)
@@ -193,18 +181,10 @@ def _required_multiples(
 def non_centrality(
     price: float, parameters: int, chance: float, discounts: tuple[float, ...] = (1.0,)
 ) -> float:
-    """Non-centrality at which a noncentral chi-square variable exceeds a threshold, by probability.
+    """Non-centrality at which a gain exceeds the threshold `price` with probability `chance`.
 
-    Parameters
-    ----------
-    price
-        The threshold.
-    parameters
-        Degrees of freedom.
-    chance
-        The probability.
-    discounts
-        Factors on the gain, 0 to 1, each equally likely.
+    The gain is a noncentral chi-square variable; `parameters` is its number of degrees of freedom.
+    `discounts` are factors on the gain, 0 to 1, each equally likely.
     """
     prices = price / np.array(discounts)
 

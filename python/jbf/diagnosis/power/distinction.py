@@ -28,10 +28,7 @@ Array = npt.NDArray[np.float64]
 
 ALL_COLUMNS = slice(None)
 NEVER = 30.0
-"""Multiple of the detectable strength from which two effects count as indistinguishable.
-
-It enters no verdict.
-"""
+"""Multiple of the detectable strength from which two effects count as indistinguishable."""
 MOST = 9.0
 """Largest squared change of one sample that is included, in units of the noise variance.
 
@@ -47,13 +44,7 @@ no verdict.
 
 
 def bounded_square(change: Array) -> float:
-    """Sum of squares of a change in which each sample contributes at most `MOST`.
-
-    Parameters
-    ----------
-    change
-        Change in units of the noise standard deviation, one value per sample.
-    """
+    """Sum of squares of a change, in units of the noise; each sample contributes at most `MOST`."""
     # Limit before squaring: with almost no noise the square would overflow.
     return float(np.sum(np.minimum(np.abs(change), np.sqrt(MOST)) ** 2))
 
@@ -118,12 +109,8 @@ def distinguishable_size(effect: Change, rival: Change, runs: PresentRuns) -> fl
 def distinction_probability(size: float, least: float) -> float:
     """Probability that the gain of an effect exceeds that of a rival by more than `least`.
 
-    Parameters
-    ----------
-    size
-        Norm of the part of the effect that the rival cannot reproduce, in units of the noise.
-    least
-        Required difference of the gains.
+    `size` is the norm of the part of the effect that the rival cannot reproduce, in units of the
+    noise.
     """
     if size <= 0.0:
         return 0.0
@@ -133,16 +120,10 @@ def distinction_probability(size: float, least: float) -> float:
 def detection_probability(
     price: float | Array, parameters: int, non_centrality: float | Array
 ) -> Array:
-    """Probability that a noncentral chi-square variable exceeds a threshold.
+    """Probability that a gain exceeds its threshold `price`, in twice the log likelihood.
 
-    Parameters
-    ----------
-    price
-        Threshold for the gain in twice the log likelihood.
-    parameters
-        Degrees of freedom.
-    non_centrality
-        Non-centrality; an array is evaluated element by element.
+    The gain is a noncentral chi-square variable; `parameters` is its number of degrees of freedom.
+    Arrays are evaluated element by element.
     """
     return np.asarray(1.0 - special.chndtr(price, parameters, non_centrality), dtype=np.float64)
 
@@ -156,22 +137,12 @@ def distinction_factor(
 ) -> float:
     """Factor on the strength from which an effect is detected and distinguished from all rivals.
 
-    Parameters
-    ----------
-    price, parameters
-        Threshold for the gain of the effect, and its number of parameters.
-    non_centrality
-        Non-centrality at the present strength; it grows with the square of the strength.
-    rivals
-        For each rival, the part of the effect that it cannot reproduce, in units of the noise, and
-        the required difference of the gains.
-    chance
-        Required probability of detection and distinction.
+    The effect has the threshold `price`, a number of parameters, and a non-centrality at the
+    present strength, which grows with the square of the strength. For each rival, `rivals` has the
+    norm of the part of the effect that it cannot reproduce, in units of the noise, and the required
+    difference of the gains. `chance` is the required probability of detection and distinction.
 
-    Returns
-    -------
-    float
-        The factor, at least 1; infinite where it would exceed `NEVER`.
+    The factor is at least 1, and infinite where it would exceed `NEVER`.
     """
 
     def surplus(times: float) -> float:

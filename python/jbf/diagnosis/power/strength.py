@@ -35,10 +35,7 @@ CACHED_SAMPLES = 100_000
 At least one change is kept. It limits the memory only.
 """
 DRAWS = 12
-"""Number of white-noise draws from which the discount factors of a gain are computed.
-
-It enters no verdict.
-"""
+"""Number of white-noise draws from which the discount factors of a gain are computed."""
 
 
 @dataclass(frozen=True)
@@ -198,10 +195,7 @@ class PresentRuns:
     def unexplained(self, changes: Sequence[Array]) -> Array:
         """Part of friction changes that the model cannot reproduce, in units of the noise.
 
-        Parameters
-        ----------
-        changes
-            Changes of the friction, in the unit of the force, one (n,) or (n, k) array per run.
+        The changes are in the unit of the force, one (n,) or (n, k) array per run.
         """
         columns = [c if c.ndim == 2 else c[:, None] for c in changes]
         empty = [np.zeros(len(c)) for c in columns]

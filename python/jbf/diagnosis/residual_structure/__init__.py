@@ -85,11 +85,7 @@ def find_patterns(
     """Find axes along which the means of the innovations differ significantly and relevantly.
 
     Each pattern that is returned contains the means of the residuals (N) along its axis.
-
-    Parameters
-    ----------
-    less_smoothed
-        Returns the residuals with a motion that is smoothed less.
+    `less_smoothed` returns the residuals with a motion that is smoothed less.
     """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))

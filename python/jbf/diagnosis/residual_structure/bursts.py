@@ -26,10 +26,7 @@ Array = npt.NDArray[np.float64]
 APART_S = 0.5
 """Largest time between two large innovations of the same burst, s. It concerns the text only."""
 NO_NOISE = 1e-9
-"""Share of the largest innovation below which the other innovations are rounding errors.
-
-It is a numerical tolerance.
-"""
+"""Share of the largest innovation below which the other innovations are rounding errors."""
 NAMED = 4
 """Number of bursts listed in the description. It concerns the text only."""
 

@@ -80,12 +80,9 @@ def disagreement(
 ) -> Disagreement:
     """Compute the likelihood gain of run-specific parameters over common parameters.
 
-    Parameters
-    ----------
-    effect
-        Effect whose parameters are tested; the part of each run that the other parameters could
-        explain is projected out. By default all parameters are tested except those of effects with
-        many peaks.
+    If an `effect` is given, its parameters are tested, and the part of each run that the other
+    parameters could explain is projected out. By default all parameters are tested except those of
+    effects with many peaks.
     """
     # Samples next to a jump with a fitted time contain the error of this time; they are excluded.
     samples = solution.samples.counted_only()

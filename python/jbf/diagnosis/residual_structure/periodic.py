@@ -58,11 +58,8 @@ def find_tones(
 ) -> list[Remainder]:
     """Test for spectral lines in the innovations; their amplitudes are those in the residuals.
 
-    Parameters
-    ----------
-    less_smoothed
-        Returns the residuals with a motion that is smoothed less. A line that changes with it is an
-        error of the smoothing.
+    `less_smoothed` returns the residuals with a motion that is smoothed less. A line that changes
+    with it is an error of the smoothing.
     """
     most = policy.motion.max_pattern_ratio
     lines: list[tuple[float, float, str]] = []
@@ -235,13 +232,9 @@ def _in_weaker_runs(
 def _ripple_size(
     travels: Sequence[Array], residuals: Sequence[Array], samples: Samples, pitch: float
 ) -> tuple[float, float, float]:
-    """Size of a ripple of given pitch.
+    """Share of the mean square, median amplitude over the runs (N) and common share of a ripple.
 
-    Returns
-    -------
-    tuple of float
-        Share of the mean square; median amplitude over the runs, N; share of the ripple's power
-        that one common phase explains.
+    The common share is the share of the ripple's power that one common phase explains.
     """
     phases, centred = [], []
     for travel, r, counted in zip(travels, residuals, samples.counted, strict=True):
@@ -256,14 +249,9 @@ def _ripple_size(
 
 
 def _describe_ripple(campaign: Campaign, pitch: float, amplitude: float, along: bool) -> str:
-    """Describe a ripple in one line.
+    """Describe a ripple in one line; `pitch` is its spatial period.
 
-    Parameters
-    ----------
-    pitch, amplitude
-        Spatial period and amplitude of the ripple.
-    along
-        True for a ripple of the force in the direction of motion, which is a periodic friction.
+    A ripple of the force in the direction of motion (`along`) is a periodic friction.
     """
     rig, quantities = campaign.rig, campaign.rig.quantities
     if quantities.motion == "rotary":

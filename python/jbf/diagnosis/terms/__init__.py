@@ -54,14 +54,9 @@ def best_term_update(
 ) -> tuple[Campaign, Names] | None:
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
-    A random effect is removed if it is no longer significant. Returns the changed campaign and the
-    effects that remain in the model; None if no term changes.
-
-    Parameters
-    ----------
-    min_evidence
-        Evidence for the accepted effect, with which some terms compete; None if no effect is
-        accepted.
+    Some terms compete with an accepted effect, whose evidence is `min_evidence`; it is None if no
+    effect is accepted. A random effect is removed if it is no longer significant. Returns the
+    changed campaign and the effects that remain in the model; None if no term changes.
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING

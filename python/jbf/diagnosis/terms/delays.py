@@ -131,12 +131,8 @@ def _gain(shifted: Shifted, other: Solution, share: float) -> float:
     """Gain of a model of time-shifted runs over another, in twice the log marginal likelihood.
 
     Delays that differ between runs are a random effect, whose number of parameters is included in
-    the determinant of its covariance.
-
-    Parameters
-    ----------
-    share
-        Ratio of the effective number of samples to the number of samples.
+    the determinant of its covariance. `share` is the effective number of samples divided by their
+    number.
     """
     solution = shifted.solution
     prepared = shifted.campaign.prepared

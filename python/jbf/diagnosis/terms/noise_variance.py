@@ -34,10 +34,7 @@ differences (Rousseeuw & Croux 1993) and larger here, since neighbouring differe
 It is a property of the estimator.
 """
 START_FREEDOM = 5.0
-"""Degrees of freedom of Student's t distribution at the start of its fit.
-
-It is a starting value only.
-"""
+"""Degrees of freedom of Student's t distribution at the start of its fit."""
 
 
 def variance_by_force(model: Model) -> Proposal | None:

@@ -163,11 +163,8 @@ def _spread(
 ) -> tuple[float, float, float] | None:
     """Estimate the between-run standard deviation of one random effect (`spread_between`).
 
-    Returns
-    -------
-    tuple or None
-        The standard deviation, its significance (p-value), and the ratio of Cochran's statistic to
-        its degrees of freedom; None if it cannot be estimated.
+    Returns the standard deviation, its significance (p-value), and the ratio of Cochran's statistic
+    to its degrees of freedom; None if it cannot be estimated.
     """
     if sigma**2 == 0.0:
         return None

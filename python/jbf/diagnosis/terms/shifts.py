@@ -26,15 +26,9 @@ Names = tuple[str, ...]
 EVALUATIONS = 12
 """Number of steps of a fit to shifted runs. It limits the effort only."""
 STEPS = 10
-"""Largest number of joint Gauss-Newton steps in the delays and the model parameters.
-
-It limits the effort only.
-"""
+"""Largest number of joint Gauss-Newton steps in the delays and the model parameters."""
 SETTLED = 0.1
-"""Size of a step, in standard errors, below which the iteration has converged.
-
-It is a numerical tolerance.
-"""
+"""Size of a step, in standard errors, below which the iteration has converged."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,11 +32,8 @@ def evidence(
     is larger, and at most that of the score (`share_of_gain`). An effect with its parameters at the
     null has no positive evidence: its gain is due to the search.
 
-    Parameters
-    ----------
-    count_local_gain
-        Do not reduce a gain that occurs in a part of the record only. Such a gain is evidence of
-        residual structure, but not of this effect.
+    A gain that occurs in a part of the record only is evidence of residual structure, but not of
+    this effect; it is not reduced with `count_local_gain`.
     """
     gain = likelihood_gain(richer, simpler)
     if gain > 0.0 and _differ_by_less_than_quantisation(candidates.campaign, richer, simpler):

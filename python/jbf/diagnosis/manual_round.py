@@ -61,19 +61,8 @@ def manual_round(
 ) -> ManualRound:
     """Fit a law with the given effects, and test each other effect in addition to them.
 
-    Parameters
-    ----------
-    rig, runs
-        The rig and the recorded runs.
-    effects
-        Effects of the model.
-    law, clock
-        Base law (by default `journal` for a bearing and `coulomb` for a drive), and the definition
-        of the time constant of its film.
-    progress
-        Called with a message, the number of tried candidates and the total number.
-    fitted_as
-        Called with the fit and its comparison before any candidate is tried.
+    The options are those of `diagnose`. `fitted_as` is called with the fit and its comparison
+    before any candidate is tried.
 
     Raises
     ------
@@ -81,11 +70,6 @@ def manual_round(
         An unknown name, a missing column, or runs without motion.
     Stopped
         The computation was interrupted; the exception holds the fit, or the best solution so far.
-
-    Returns
-    -------
-    ManualRound
-        The fit, the candidates tried, the comparison with the records, and the detection limits.
     """
     law = default_law(rig) if law is None else law
     if progress is not None:

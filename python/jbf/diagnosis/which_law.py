@@ -139,11 +139,8 @@ def which_law(
 ) -> tuple[tuple[LawTried, ...], dict[str, str]]:
     """Compare the laws that the rig allows by their held-out errors.
 
-    Returns
-    -------
-    tuple
-        The laws, the selected one first and the others by held-out error; and the laws that were
-        not evaluated, with the reasons.
+    Returns the laws, the selected one first and the others by held-out error; and the laws that
+    were not evaluated, with the reasons.
     """
     names, refused = followed(campaign, clock)
     held_out: dict[str, HeldOut] = {}
@@ -233,15 +230,10 @@ def compared(
 ) -> list[LawTried]:
     """Rank models by their held-out errors, best first, and mark those tied with the best.
 
-    The errors whitened for the errors of the motion determine the ranking, since an elastic law
-    would smooth acceleration errors next to a reversal.
-
-    Parameters
-    ----------
-    entries
-        Number of parameters and held-out errors of each model, by name.
-    least_share
-        Minimum relative difference of the mean squares of models that are not tied.
+    `entries` has the number of parameters and the held-out errors of each model, by name. The
+    errors whitened for the errors of the motion determine the ranking, since an elastic law would
+    smooth acceleration errors next to a reversal. Models whose mean squares differ by less than
+    `least_share`, relative to the best, are tied.
     """
     plain, decisive = (
         np.array([np.concatenate(rows) ** 2 for rows in kind])

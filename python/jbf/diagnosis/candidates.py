@@ -71,6 +71,7 @@ class Candidates:
         self.earlier = earlier
         self.policy, self.progress = policy, progress
         self.reached: Reached = Reached() if earlier is None else earlier.reached
+        self._excluded: dict[str, str | None] = {} if earlier is None else earlier._excluded
         self._fitted: dict[frozenset[str], Fitted] = {}
         self._level: Level | None = None
         self._levels: dict[frozenset[str], tuple[Level, RichestResidual | None]] = {}
@@ -107,7 +108,18 @@ class Candidates:
     def _missing_requirements(self) -> dict[str, str | None]:
         """Why these runs cannot test an effect that the law allows, or None, by name."""
         pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
-        return {e.name: self.campaign.missing_requirement(e) for e in pages}
+        return {e.name: self.campaign.missing_requirement(e) for e in pages} | self._excluded
+
+    def testable(self, present: Sequence[str]) -> tuple[str, ...]:
+        """Those of the effects `present` that these runs can test; the others are excluded.
+
+        An effect that was added may not be testable with errors of the motion estimated again. It
+        is not tried again, since these errors may be small without it.
+        """
+        self._excluded.update(
+            {name: self.not_tried[name] for name in present if name in self.not_tried}
+        )
+        return tuple(name for name in present if name not in self._excluded)
 
     def addable(self, present: Collection[str]) -> list[str]:
         """Names of the effects that can be added to a model with the effects `present`."""
@@ -195,7 +207,8 @@ class Candidates:
         """Acceptance threshold in white noise, for the residual of the model with these effects."""
         base = self.converge(present)
         samples = self.independent_share(base) * base.samples.count
-        return Level.in_white_noise(self.policy, len(self.names), samples, base.rms)
+        least = self.policy.least_effect_share(self.campaign.motion_share)
+        return Level.in_white_noise(self.policy, len(self.names), samples, base.rms, least)
 
     # ---- fits -------------------------------------------------------------------------------
 

@@ -84,15 +84,17 @@ class Level:
         candidates: int,
         samples: float,
         noise_rms: float,
+        least_share: float = 0.0,
     ) -> Level:
         """Return the threshold in white noise; the candidates share the false-alarm rate.
 
         The significance level of one candidate follows by the Bonferroni correction. `samples` is
-        the number of independent samples, and `noise_rms` the RMS of the residual, N.
+        the number of independent samples, `noise_rms` the RMS of the residual, N, and `least_share`
+        the minimum share of the mean square that an effect must explain.
         """
         least = max(policy.min_effect_share, policy.min_effect / max(noise_rms, 1e-300))
         chance = policy.false_alarm_rate / max(candidates, 1)
-        share = least**2
+        share = max(least**2, least_share)
         return cls(
             policy.false_alarm_rate,
             candidates,

@@ -103,6 +103,10 @@ class Policy:
         """
         return min(motion_share, self.motion.max_structure_share)
 
+    def least_effect_share(self, motion_share: float) -> float:
+        """Minimum share of the mean square that an effect that does not smooth must explain."""
+        return min(motion_share, self.motion.max_effect_share)
+
     def with_values(self, values: Mapping[str, Any]) -> Policy:
         """Return a copy of the policy with some values replaced, given by dotted name.
 

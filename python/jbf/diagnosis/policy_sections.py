@@ -262,6 +262,13 @@ class Motion:
         "1.0 to 1.2 for friction, at most 0.6 or above 1.7 for smoothing in simulated servo drives "
         "(seeds 4850 to 4877)",
     )
+    max_effect_share: float = documented(
+        0.015,
+        "share of the mean square that an effect must explain where the errors of the motion have "
+        "a larger share of the variance",
+        "largest share that a false effect explained in simulated servo drives (seeds 4938 to "
+        "5012)",
+    )
     min_noise_ratio: float = documented(
         1.1,
         "minimum ratio by which the noise, or the RMS of the residuals, must decrease "

@@ -126,6 +126,9 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             candidates = candidates.with_campaign(settled)
             present = still_needed(candidates, present)
             visited = {frozenset(present)}
+        testable = candidates.testable(present)
+        if testable != present:
+            present, visited = testable, {frozenset(testable)}
         candidates.reached.candidates, candidates.reached.present = candidates, present
         # Test every candidate in addition to the present effects.
         trial_round = try_candidates(candidates, present, follow)

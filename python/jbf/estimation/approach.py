@@ -24,26 +24,15 @@ from jbf.models.catalogue import Parameter, find_effect
 
 Array = npt.NDArray[np.float64]
 TRIAL_EVALUATIONS = 6
-"""Evaluations spent on each starting point before only the best one is followed.
-
-With half of them, an effect whose null is a flat region of the objective stays at its null. It
-bounds the computing time only.
-"""
+"""Evaluations spent on each starting point before only the best one is followed. With half of them,
+an effect whose null is a flat region of the objective stays at its null."""
 FOLLOWED = 2
-"""Number of starting points searched for a few evaluations when candidates are ranked.
-
-It limits the effort only.
-"""
+"""Number of starting points searched for a few evaluations when candidates are ranked."""
 KEPT = 12
-"""Largest number of starting points kept after each combination of starting values.
-
-It limits the effort only.
-"""
+"""Largest number of starting points kept after each combination of starting values."""
 LOOKED = 3
-"""Number of evaluations of a first, short search (`Approach.look`).
-
-It starts from the best starting point of the first seed. It limits the effort only.
-"""
+"""Number of evaluations of a first, short search (`Approach.look`). It starts from the best
+starting point of the first seed."""
 
 
 def many_peaks(effects: Iterable[str]) -> bool:

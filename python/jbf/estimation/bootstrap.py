@@ -45,15 +45,9 @@ from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
 LEAST_REPEATS = 19
-"""Minimum number of repeats: fewer do not determine the width of the central 68 %.
-
-It only limits the input.
-"""
+"""Minimum number of repeats: fewer do not determine the width of the central 68 %."""
 MOST_REPEATS = 100_000
-"""Maximum number of repeats; more take too long and add no information.
-
-It only limits the input.
-"""
+"""Maximum number of repeats; more take too long and add no information."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -14,11 +14,8 @@ from jbf.records.arguments import by_name, described
 from jbf.records.toml_file import number
 
 AT_BOUND = 1e-6
-"""Relative tolerance within which a value counts as at its bound.
-
-It is a fraction of the logarithmic distance between the bounds, or of the value or its error. It is
-a numerical tolerance.
-"""
+"""Relative tolerance within which a value counts as at its bound. It is a fraction of the
+logarithmic distance between the bounds, or of the value or its error."""
 Bounds = dict[str, tuple[float, float]]
 """Full parameter name to its lower and upper bound."""
 

@@ -63,15 +63,9 @@ NEEDS_TIME = frozenset((
 ))  # fmt: skip
 """Effects that are not tried on steady states."""
 NOISE_SPAN = 3.29
-"""Interval between the 5 % and 95 % quantiles of white noise, in standard deviations.
-
-It follows from the estimator.
-"""
+"""Interval between the 5 % and 95 % quantiles of white noise, in standard deviations."""
 HUM = 0.02
-"""Fraction of the top speed below which a sample is not used for a scale of the motion.
-
-It only starts a search.
-"""
+"""Fraction of the top speed below which a sample is not used for a scale of the motion."""
 
 
 @dataclass(frozen=True, eq=False)

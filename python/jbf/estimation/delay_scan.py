@@ -36,29 +36,17 @@ from jbf.models.delayed_reading import TAU, DelayedChain
 
 Array = npt.NDArray[np.float64]
 LEAST_STEPS = 0.05
-"""Smallest resolvable delay, in sampling intervals: a jump then occurs at another sample.
-
-It enters no verdict.
-"""
+"""Smallest resolvable delay, in sampling intervals: a jump then occurs at another sample."""
 REACH = 5.0
-"""Half-width of the delay scan, in standard errors of the search. It bounds a search only."""
+"""Half-width of the delay scan, in standard errors of the search."""
 LEAST_REACH_STEPS = 0.2
-"""Minimum half-width of the delay scan, in sampling intervals. It bounds a search only."""
+"""Minimum half-width of the delay scan, in sampling intervals."""
 COARSE, FINE = 31, 17
-"""Number of delays in the first scan, and in a second one around the most likely delay.
-
-It is a numerical resolution.
-"""
+"""Number of delays in the first scan, and in a second one around the most likely delay."""
 CLIPPED = 5.0
-"""Limit of the contribution of a residual to the cost, in standard deviations.
-
-It enters no verdict.
-"""
+"""Limit of the contribution of a residual to the cost, in standard deviations."""
 BLURRED = 3.5
-"""Distance from a jump, in standard errors of its time, within which its side is uncertain.
-
-It enters no verdict.
-"""
+"""Distance from a jump, in standard errors of its time, within which its side is uncertain."""
 
 
 @dataclass(frozen=True)

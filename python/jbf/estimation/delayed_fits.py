@@ -30,26 +30,18 @@ from jbf.models.delayed_reading import TAU
 
 Array = npt.NDArray[np.float64]
 ROUNDS = 8
-"""Largest number of iterations of sensitivities and fits. It limits the effort only."""
+"""Largest number of iterations of sensitivities and fits."""
 SETTLED = 0.01
-"""Change of the prediction, relative to the noise, at which the iteration stops.
-
-It is a numerical tolerance.
-"""
+"""Change of the prediction, relative to the noise, at which the iteration stops."""
 EVALUATIONS = 20
-"""Evaluations of each fit. It limits the effort only."""
+"""Evaluations of each fit."""
 DELAY_STEP = 0.02
-"""Tolerance of a delay of the force, in sampling intervals. It is a numerical tolerance."""
+"""Tolerance of a delay of the force, in sampling intervals."""
 MAX_BRACKETS = 4
-"""Number of intervals, each half a sampling interval, in which a sign change is sought.
-
-It bounds a search only.
-"""
+"""Number of intervals, each half a sampling interval, in which a sign change is sought."""
 DELAY_SPAN = 0.1
-"""Half-width of the central difference of the sum of squares with respect to the delay.
-
-It is in sampling intervals, and is a numerical resolution.
-"""
+"""Half-width of the central difference of the sum of squares with respect to the delay. It is in
+sampling intervals."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,15 +38,9 @@ Clocks = Literal["by run", "drift", "drift and delay"]
 "drift and delay": the same clock rate and a delay of the instrument.
 """
 FINE_S = 2.5e-3
-"""Largest interval between the times at which the model's force is computed, s.
-
-It is a numerical resolution.
-"""
+"""Largest interval between the times at which the model's force is computed, s."""
 RANK = 1e-10
-"""Fraction of the largest singular value below which a direction is not identifiable.
-
-It is a numerical tolerance.
-"""
+"""Fraction of the largest singular value below which a direction is not identifiable."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,12 +40,9 @@ from jbf.models.delayed_reading import TAU
 
 Array = npt.NDArray[np.float64]
 INTENSITY_STEP = 3.0
-"""Factor on the noise intensity between two motions whose likelihoods are compared.
-
-It is a numerical resolution.
-"""
+"""Factor on the noise intensity between two motions whose likelihoods are compared."""
 LEAST_INTENSITY = 1e-4
-"""Smallest factor on the intensity, and the reciprocal of the largest. It bounds a search only."""
+"""Smallest factor on the intensity, and the reciprocal of the largest."""
 
 
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

@@ -24,26 +24,16 @@ from jbf.models.catalogue import find_effect
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 EVALUATIONS = 12
-"""Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs.
-
-It limits the effort only.
-"""
+"""Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs."""
 SHORT = 3.0
 """Length of a step per parameter, in standard deviations, that is accepted without a search.
 
-Noise alone causes steps of this length in a fit to the remaining runs. A search continues from the
-end of a longer step. It is a numerical tolerance.
-"""
+Noise alone causes steps of this length. A search continues from the end of a longer step."""
 STRAIGHT = 0.05
-"""Deviation from linearity, as a fraction of a change, up to which a step is accepted.
-
-Within it a step is accepted without further iterations. It is a numerical tolerance.
-"""
+"""Deviation from linearity, as a fraction of a change, up to which a step is accepted. Within it a
+step is accepted without further iterations."""
 NOTHING = 0.01
-"""Fraction of the residual below which the error of a prediction is negligible.
-
-It is a numerical tolerance.
-"""
+"""Fraction of the residual below which the error of a prediction is negligible."""
 
 
 @dataclass(frozen=True)

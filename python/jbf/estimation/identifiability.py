@@ -31,25 +31,16 @@ NEVER_MOVED = "not determined: these runs do not depend on it"
 NOT_SEPARATE = "not identifiable: another parameter has the same effect in these runs"
 NO_EFFECT = "at its null: no effect"
 ONE_SIDED = 2.0
-"""Standard errors added to the value of a scale for its upper limit. It concerns the text only."""
+"""Standard errors added to the value of a scale for its upper limit."""
 SAME_IN_NOISE = 1e-4
-"""Largest difference of predictions that are equivalent, as a fraction of the residual.
-
-It is a numerical tolerance.
-"""
+"""Largest difference of predictions that are equivalent, as a fraction of the residual."""
 SAME_IN_FRICTION = 1e-9
-"""Largest difference of predictions that are equivalent, as a fraction of the friction.
-
-It is a numerical tolerance.
-"""
+"""Largest difference of predictions that are equivalent, as a fraction of the friction."""
 SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force to which it is equal without a Stribeck peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
-"""Fractions of the distance to the neutral value by which a reset is tried.
-
-If the starting value itself changes the prediction, a partial reset may still give a less extreme
-value. It is a numerical resolution.
-"""
+"""Fractions of the distance to the neutral value by which a reset is tried. If the starting value
+itself changes the prediction, a partial reset may still give a less extreme value."""
 
 
 def reason_not_identifiable(

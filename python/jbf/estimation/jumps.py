@@ -28,10 +28,7 @@ from jbf.models.catalogue import Parameter, find_effect
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 MOST = 0.29
-"""Standard deviation of a uniform position between two samples, relative to their distance.
-
-It follows from the estimator.
-"""
+"""Standard deviation of a uniform position between two samples, relative to their distance."""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:

@@ -14,33 +14,20 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 MOST_HELD = 2_000_000
-"""Largest number of values (samples times parameters) that a solution holds.
-
-Larger results are computed again for each access. It limits the effort only.
-"""
+"""Largest number of values (samples times parameters) that a solution holds. Larger results are
+computed again for each access."""
 SEARCHED = 6_000
-"""Approximate number of samples of the runs that are selected for searches and score tests.
-
-All runs are used below twice this number, or with fewer than twice `LEAST_RUNS` runs. It limits the
-effort only.
-"""
+"""Approximate number of samples of the runs that are selected for searches and score tests. All
+runs are used below twice this number, or with fewer than twice `LEAST_RUNS` runs."""
 LEAST_RUNS = 4
-"""Smallest number of runs that are selected for a search. It limits the effort only."""
+"""Smallest number of runs that are selected for a search."""
 GROUP = 16_000_000
-"""Largest number of derivatives held at a time during the computation of a solution.
-
-It limits the effort only.
-"""
+"""Largest number of derivatives held at a time during the computation of a solution."""
 BLOCK = 1_000
-"""Number of rows of a block of a QR decomposition, which then fits into the cache of a processor.
-
-It limits the effort only.
-"""
+"""Number of rows of a block of a QR decomposition, which then fits into the cache of a
+processor."""
 INDEPENDENT = 1e-10
-"""Relative singular value above which a direction of a design is independent.
-
-It is a numerical tolerance.
-"""
+"""Relative singular value above which a direction of a design is independent."""
 
 
 class OnDemand(Sequence[Array]):

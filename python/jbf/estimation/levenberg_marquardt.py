@@ -22,36 +22,18 @@ from scipy import optimize
 
 Array = npt.NDArray[np.float64]
 INITIAL_DAMPING = 1e-4
-"""Damping of the first step, relative to the squares of the columns of the Jacobian.
-
-It affects the path of a search only.
-"""
+"""Damping of the first step, relative to the squares of the columns of the Jacobian."""
 LEAST_FACTOR = 1.0 / 3.0
-"""Smallest factor on the damping after an accepted step.
-
-The factor is 1 - (2 r - 1)^3 for a ratio r of actual to predicted decrease, at most 2 (Nielsen
-1999). It affects the path of a search only.
-"""
+"""Smallest factor on the damping after an accepted step. The factor is 1 - (2 r - 1)^3 for a ratio
+r of actual to predicted decrease, at most 2 (Nielsen 1999)."""
 FIRST_INCREASE = 8.0
-"""Factor by which the first rejected step increases the damping; it doubles at each further one.
-
-It affects the path of a search only.
-"""
+"""Factor by which the first rejected step increases the damping; it doubles at each further one."""
 MAX_DAMPING = 1e10
-"""Damping at which a search ends, because no step reduces the sum of squares.
-
-It is a numerical tolerance.
-"""
+"""Damping at which a search ends, because no step reduces the sum of squares."""
 ACCEPTED = 1e-4
-"""Smallest ratio of actual to predicted decrease of an accepted step.
-
-It affects the path of a search only.
-"""
+"""Smallest ratio of actual to predicted decrease of an accepted step."""
 TRUSTED = 0.25
-"""Ratio of actual to predicted decrease above which a small decrease ends the search.
-
-It is a numerical tolerance.
-"""
+"""Ratio of actual to predicted decrease above which a small decrease ends the search."""
 
 
 @dataclass(frozen=True)

@@ -24,15 +24,14 @@ from jbf.models.catalogue import find_effect, find_law
 
 Array = npt.NDArray[np.float64]
 MAX_EVALUATIONS = 60
-"""Maximum number of evaluations of a search that converges. It limits the effort only."""
+"""Maximum number of evaluations of a search that converges."""
 FOLLOWED_IN_A_FIT = 6
 """Number of starting points searched for a few evaluations when a single model is fitted.
 
 For a law without a film, these are searched to convergence, which is then inexpensive. The squares
-of a wrong law have many local minima. It limits the effort only.
-"""
+of a wrong law have many local minima."""
 NESTED_EVALUATIONS = 30
-"""Evaluations of a fit of the law without its effects. It limits the effort only."""
+"""Evaluations of a fit of the law without its effects."""
 
 
 def settle(

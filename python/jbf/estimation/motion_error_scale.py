@@ -17,17 +17,17 @@ from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 RATIOS = 9
-"""Number of grid points of scale / noise that bracket the minimum. It bounds a search only."""
+"""Number of grid points of scale / noise that bracket the minimum."""
 RATIO_STEP = 0.01
-"""Tolerance of the logarithm of the ratio of error scale and noise. It is a numerical tolerance."""
+"""Tolerance of the logarithm of the ratio of error scale and noise."""
 MOST_SCALE = 3.0
-"""Largest logarithm of the error scale, and minus the smallest. It bounds a search only."""
+"""Largest logarithm of the error scale, and minus the smallest."""
 MOST_NOISE = 0.5
-"""Logarithm of the largest noise, relative to the residual. It bounds a search only."""
+"""Logarithm of the largest noise, relative to the residual."""
 EXACT_RECORD = 1e-12
-"""Smallest residual relative to the largest force. It is a numerical tolerance."""
+"""Smallest residual relative to the largest force."""
 LEAST_NOISE = -7.0
-"""Logarithm of the smallest noise, relative to the residual. It bounds a search only."""
+"""Logarithm of the smallest noise, relative to the residual."""
 
 
 def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMotion:

@@ -20,15 +20,10 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 MOST_AT_ONCE = 4
-"""Largest number of parallel fits; with more, the interpreter lock is the bottleneck.
-
-It limits the effort only.
-"""
+"""Largest number of parallel fits; with more, the interpreter lock is the bottleneck."""
 MAX_PARALLEL_SAMPLES = 400_000
-"""Number of samples above which fits run one after another, since their matrices fill the memory.
-
-It limits the effort only.
-"""
+"""Number of samples above which fits run one after another, since their matrices fill the
+memory."""
 
 
 def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:

@@ -31,21 +31,15 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LINES = 3
-"""Number of highest spectral lines that are tried, each after removal of the higher ones.
-
-It only starts a search.
-"""
+"""Number of highest spectral lines that are tried, each after removal of the higher ones."""
 BINS_A_PITCH = 4.0
-"""Number of position bins in the shortest pitch that is searched. It only starts a search."""
+"""Number of position bins in the shortest pitch that is searched."""
 MOST_BINS = 2**15
-"""Largest number of position bins. It is a numerical resolution."""
+"""Largest number of position bins."""
 PADDING = 8
-"""Spectral lines per resolution width. It is a numerical resolution."""
+"""Spectral lines per resolution width."""
 KNOTS = 8
-"""Number of knots in each direction of a piecewise linear friction-speed curve.
-
-It only starts a search.
-"""
+"""Number of knots in each direction of a piecewise linear friction-speed curve."""
 
 Knots = list[tuple[float, Array]]
 

@@ -24,10 +24,7 @@ Array = npt.NDArray[np.float64]
 LATE = "late_channel"
 """Kind of the finding that states a corrected delay of the force."""
 STEP = 0.5
-"""Step of numerical derivatives with respect to the motion, in standard errors of the motion.
-
-It is a numerical resolution.
-"""
+"""Step of numerical derivatives with respect to the motion, in standard errors of the motion."""
 
 
 def posteriors(problem: Problem) -> list[Smoothed | None]:

@@ -36,10 +36,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 FINER = 1.5
-"""Ratio of the sampling rates of motion and force above which all motion samples are used.
-
-It is a numerical resolution.
-"""
+"""Ratio of the sampling rates of motion and force above which all motion samples are used."""
 
 
 def slides(motion: EstimatedMotion) -> Mask:

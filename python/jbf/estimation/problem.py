@@ -43,15 +43,9 @@ Lines = tuple[list[Array], list[Array]]
 """Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
 
 SLOPES_COST = 2.0
-"""Computing cost of a prediction with derivatives, relative to one without derivatives.
-
-It limits the effort only.
-"""
+"""Computing cost of a prediction with derivatives, relative to one without derivatives."""
 BOUNDLESS = 1e50
-"""Derivatives above this are treated as diverged, since a search squares them.
-
-It is a numerical tolerance.
-"""
+"""Derivatives above this are treated as diverged, since a search squares them."""
 
 
 class Best:

@@ -16,15 +16,9 @@ from scipy import optimize
 
 Array = npt.NDArray[np.float64]
 MOST_NOISE = 3.0
-"""Largest noise that is considered, in steps; at larger noise the quantisation is negligible.
-
-It bounds a search only.
-"""
+"""Largest noise that is considered, in steps; at larger noise the quantisation is negligible."""
 HARMONICS = 3
-"""Number of harmonics of the bias; higher ones matter only for noise below a tenth of a step.
-
-It is a numerical resolution.
-"""
+"""Number of harmonics of the bias; higher ones matter only for noise below a tenth of a step."""
 
 
 def zero_offset(step_n: float, readings_n: Array) -> float:

@@ -20,10 +20,7 @@ from jbf.estimation.noise import Noise
 
 Array = npt.NDArray[np.float64]
 ROUNDING = 1e-9
-"""Fraction of the total precision below which that of the other runs is treated as zero.
-
-It is a numerical tolerance.
-"""
+"""Fraction of the total precision below which that of the other runs is treated as zero."""
 
 
 def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, float]:

@@ -22,31 +22,20 @@ from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 TUNING = 1.345
-"""Huber's constant: limit of the influence of a residual, in robust standard deviations.
-
-The efficiency is 95 % of least squares for Gaussian noise (Huber 1964). It enters no verdict.
-"""
+"""Huber's constant: limit of the influence of a residual, in robust standard deviations. The
+efficiency is 95 % of least squares for Gaussian noise (Huber 1964)."""
 FREEDOM = 3.0
-"""Degrees of freedom of Student's t. It enters no verdict."""
+"""Degrees of freedom of Student's t."""
 ROUNDS = 4
-"""Number of iterations of weights and fits. It limits the effort only."""
+"""Number of iterations of weights and fits."""
 ELSEWHERE = 0.05
-"""Difference of two models' predictions above which their estimates differ.
-
-It enters no verdict.
-
-The difference is a fraction of the residual's RMS.
-"""
+"""Difference of two models' predictions above which their estimates differ. The difference is a
+fraction of the residual's RMS."""
 BETTER = 0.97
-"""Ratio of held-out RMS values below which one of them counts as smaller.
-
-It enters no verdict.
-"""
+"""Ratio of held-out RMS values below which one of them counts as smaller."""
 NO_WORSE, SHARPER = 1.02, 0.8
-"""Accepted ratio of held-out RMS values, if the ratio of the medians is at most the second value.
-
-It enters no verdict.
-"""
+"""Accepted ratio of held-out RMS values, if the ratio of the medians is at most the second
+value."""
 
 
 def best_weighting(problem: Problem, plain: Solution) -> Solution:

@@ -21,39 +21,26 @@ from jbf.estimation.samples import Samples
 
 Array = npt.NDArray[np.float64]
 NEAR = 0.3
-"""Largest relative difference of each parameter between two points compared for equivalence.
-
-It is a numerical tolerance.
-"""
+"""Largest relative difference of each parameter between two points compared for equivalence."""
 SAME = 0.1
 """Largest difference of predictions at equivalent points, as a fraction of the residual.
 
-Both linear models must give at most this difference; the sums of squares then differ by about one
-hundredth. It is a numerical tolerance.
-"""
+It applies to both linear models; the sums of squares then differ by about one hundredth."""
 ENDED = 1e-6
-"""Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
+"""Relative difference of sums of squares at which a search ends."""
 NEAR_MINIMUM = 0.5
 """Gain (`least_gain`) at which a search ends whose result is only compared with others.
 
 These are fits of candidates, refits for held-out runs, fits with a given delay, and the first
-search of a fit. The gain is small compared with that by which an effect is accepted. It is a
-numerical tolerance.
-"""
+search of a fit. The gain is small compared with that by which an effect is accepted."""
 LONGEST = 3.0
-"""Largest change of the logarithm of a scale parameter in one step: a factor of 20.
-
-It affects the path of a search only.
-"""
+"""Largest change of the logarithm of a scale parameter in one step: a factor of 20."""
 REACH = 5.0
-"""Range of a scan for other maxima, as a factor on the value upwards and downwards.
-
-It bounds a search only.
-"""
+"""Range of a scan for other maxima, as a factor on the value upwards and downwards."""
 POINTS = 41
-"""Number of points of a scan for other maxima. It is a numerical resolution."""
+"""Number of points of a scan for other maxima."""
 CLIMBED = 2
-"""Number of maxima of a scan that are followed by a search. It limits the effort only."""
+"""Number of maxima of a scan that are followed by a search."""
 
 
 @dataclass(frozen=True)

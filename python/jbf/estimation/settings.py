@@ -53,9 +53,7 @@ class NoiseSettings:
     )
     min_rest_samples: int = documented(60, "minimum number of samples of a rest", "convention")
     min_repeated_samples: int = documented(
-        100,
-        "minimum number of repeated samples of a run for an estimate of the noise",
-        "four blocks of 25",
+        100, "minimum number of repeated samples of a run for a noise estimate", "four blocks of 25"
     )
     min_floor_ratio: float = documented(
         1.04,
@@ -80,14 +78,10 @@ class VarianceSettings:
         8, "minimum number of windows of a run; for fewer, the windows are shortened", "convention"
     )
     min_runs: int = documented(
-        3,
-        "minimum number of runs for an estimate of the scatter between runs",
-        "two degrees of freedom",
+        3, "minimum number of runs for an estimate of their scatter", "two degrees of freedom"
     )
     chance: float = documented(
-        0.01,
-        "significance level at which the scatter of windows or runs exceeds that of white noise",
-        "1 in 100",
+        0.01, "significance level for scatter of windows or runs beyond white noise", "1 in 100"
     )
 
 
@@ -162,9 +156,7 @@ class TransientSettings:
         "increases the variance by 4 %",
     )
     max_share_film: float = documented(
-        0.5,
-        "share of a run above which nothing is excluded for a film",
-        "convention: half of a run must remain",
+        0.5, "share of a run above which nothing is excluded for a film", "convention: half remains"
     )
     max_share_contact: float = documented(
         0.75,
@@ -246,9 +238,7 @@ class DelaySettings:
         60, "minimum number of samples of a part for an estimate of its delay", "convention"
     )
     max_edge_likelihood: float = documented(
-        0.01,
-        "likelihood at the ends of the searched range above which the delay is unknown",
-        "1 in 100",
+        0.01, "likelihood at the ends of the range above which the delay is unknown", "1 in 100"
     )
     max_run_share: float = documented(
         0.1, "share of the shortest run above which a delay or lag is not plausible", "convention"

@@ -24,25 +24,13 @@ from jbf.models.parameter_value import ParameterValue
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 INSENSITIVE = 1e-9
-"""Fraction of the largest derivative below which the runs do not depend on a parameter.
-
-It is a numerical tolerance.
-"""
+"""Fraction of the largest derivative below which the runs do not depend on a parameter."""
 SINGULAR = 1e12
-"""Condition number of the normal equations above which parameters cannot be separated.
-
-It is a numerical tolerance.
-"""
+"""Condition number of the normal equations above which parameters cannot be separated."""
 TAKES_PART = 1e-3
-"""Weight of a parameter in an unidentifiable combination above which it is unidentifiable.
-
-It is a numerical tolerance.
-"""
+"""Weight of a parameter in an unidentifiable combination above which it is unidentifiable."""
 BENT = 0.3
-"""Accepted deviation from one of the rise of the deviance one standard error from the minimum.
-
-It enters no verdict.
-"""
+"""Accepted deviation from one of the rise of the deviance one standard error from the minimum."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,23 +25,15 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Starts = tuple[float, ...]
 CELL_ERROR = 0.03
-"""Starting value of a load-cell error, as a fraction of the largest force.
-
-It only starts a search.
-"""
+"""Starting value of a load-cell error, as a fraction of the largest force."""
 MAX_CELL_HYSTERESIS = 0.25
-"""Largest half-width of the hysteresis of a load cell, as a fraction of the largest force.
-
-A wider loop is friction or elasticity of the machine. It defines an effect, not a criterion.
-"""
+"""Largest half-width of the hysteresis of a load cell, as a fraction of the largest force. A wider
+loop is friction or elasticity of the machine."""
 SHORTEST_M = 1e-9
 """Lower limit of a stroke, m, which is used for a drive that does not move."""
 BEYOND = 0.1
-"""Margin added to the stroke at either end, as a fraction of the travel of the runs.
-
-Waves whose slope vanishes at the ends of the stroke can then describe a slope at those of the runs.
-It defines an effect, not a criterion.
-"""
+"""Margin added to the stroke at either end, as a fraction of the travel of the runs. Waves whose
+slope vanishes at the ends of the stroke can then describe a slope at those of the runs."""
 
 
 @dataclass(frozen=True)

@@ -31,10 +31,7 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 REST_SHARE = 1e-9
-"""Fraction of the top speed below which a sample is at rest, where friction is set-valued.
-
-It enters no verdict.
-"""
+"""Fraction of the top speed below which a sample is at rest, where friction is set-valued."""
 
 
 @dataclass(frozen=True, repr=False)

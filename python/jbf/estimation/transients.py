@@ -36,10 +36,7 @@ Mask = npt.NDArray[np.bool_]
 EDGE = 1e-3
 """Fraction of a gap within which a simulated motion changes its speed."""
 RANKING_EVALUATIONS = 8
-"""Evaluations of a fit that is accurate enough to estimate the rate of the film.
-
-It limits the effort only.
-"""
+"""Evaluations of a fit that is accurate enough to estimate the rate of the film."""
 
 
 def check_film_rate(

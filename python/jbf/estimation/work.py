@@ -18,16 +18,10 @@ from jbf.errors import InputError, Unfinished
 from jbf.records.arguments import described
 
 STEPS_A_SAMPLE = 1e5
-"""Number of integration steps per sample that a diagnosis may take.
-
-This is ten times the number of the most expensive diagnoses that end in a verdict. It bounds the
-computing time only.
-"""
+"""Number of integration steps per sample that a diagnosis may take. This is ten times the number of
+the most expensive diagnoses that end in a verdict."""
 ANY_STEPS = 4e8
-"""Number of integration steps that are permitted for any number of samples.
-
-It limits the effort only.
-"""
+"""Number of integration steps that are permitted for any number of samples."""
 
 
 @dataclass(frozen=True)

@@ -235,9 +235,8 @@ class Candidates:
         fitted = self.fitted(effects)
         if fitted.state == "posed":
             fitted.approach = self._approach(fitted, effects, near)
-            look = fitted.approach.look(near)
-            fitted.solution = fitted.approach.solution_of(look, near)
-            fitted.state, fitted.promised = "looked", look.promised
+            fitted.solution, fitted.promised = fitted.approach.look(near)
+            fitted.state = "looked"
         return fitted
 
     def _approach(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:

@@ -1,14 +1,14 @@
 """Approach to the minimum of a model from its starting points, assuming white noise.
 
-`Approach` ranks the starting points and continues from the best one. It may end after a few steps
-(`Look`), which estimate the log-likelihood gain of a model in a quarter of the computing time.
+`Approach` ranks the starting points and continues from the best one. `Approach.look` ends after a
+few steps, which estimate the log-likelihood gain of a model in a quarter of the computing time.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy.typing as npt
 from jbf.estimation.least_squares import unexplained_square
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
-from jbf.estimation.problem import Lines, Problem
+from jbf.estimation.problem import Problem
 from jbf.estimation.search import SearchResult, Visited, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import Parameter, find_effect
@@ -38,28 +38,6 @@ starting point of the first seed."""
 def many_peaks(effects: Iterable[str]) -> bool:
     """Whether the likelihood of a model with any of these effects has many local maxima."""
     return any(find_effect(name).peaks for name in effects)
-
-
-@dataclass(frozen=True)
-class Look:
-    """Result of a few steps of a fit, compared with a smaller model.
-
-    Attributes
-    ----------
-    values
-        Parameter values reached.
-    gain
-        Log-likelihood gain (2 x difference of log likelihood) reached so far.
-    promised
-        Log-likelihood gain predicted by the linear model at the best of the visited points.
-    lines
-        Residuals and Jacobian at these values; None if they were not stored.
-    """
-
-    values: Array
-    gain: float
-    promised: float
-    lines: Lines | None
 
 
 class Approach:
@@ -149,38 +127,38 @@ class Approach:
         runs = self.thinned.campaign.prepared
         return [int(np.argmax([float(np.max(np.abs(p.motion.velocity))) for p in runs]))]
 
-    def look(self, near: Solution) -> Look:
-        """Search by a few steps from the first seed; compute the gain over a smaller model."""
+    def look(self, near: Solution) -> tuple[Solution, float]:
+        """Search by a few steps from the first seed, and compare with a smaller model's solution.
+
+        The first result is a solution with the noise of `near`. The second one is the gain in twice
+        the log likelihood over `near` that the linear model predicts at the best visited point.
+        """
         problem, thinned, visited = self.problem, self.thinned, self.visited
         samples = thinned.campaign.samples
         search(thinned, samples, self._nearest, WHITE, LOOKED, visited=visited)
         # The next search visits the same points and must not end there as a duplicate search.
         visited.ended.clear()
         points = list(visited.points.values())
-        lowest = min(points, key=lambda point: point.square)
+        values = min(points, key=lambda point: point.square).values
         linear = min(unexplained_square(point.jacobian, point.residual) for point in points)
         before = samples.square([near.residuals[i] for i in problem.searched])
         count = problem.campaign.samples.count
-        gain, promised = (count * _log_ratio(before, after) for after in (lowest.square, linear))
-        lines = visited.lines_at(lowest.values) if thinned is problem else None
+        promised = count * _log_ratio(before, linear)
+        lines = visited.lines_at(values) if thinned is problem else None
         visited.lowest = None
         if not near.noise.white:
             # In noise of low frequency, an effect of high frequency has a large gain even if it
             # reduces the sum of squares only slightly.
             if lines is None:
-                return Look(lowest.values, gain, np.inf, None)
-            before = float(np.sum(near.stacked()[0] ** 2))
-            r, j = near.samples.stacked(*lines, near.noise)
-            gain = max(gain, count * _log_ratio(before, float(r @ r)))
-            promised = max(promised, count * _log_ratio(before, unexplained_square(j, r)))
-        return Look(lowest.values, gain, promised, lines)
-
-    def solution_of(self, look: Look, near: Solution) -> Solution:
-        """Convert the result of a first look to a solution, with the noise of the smaller model."""
-        problem, lines = self.problem, look.lines
-        samples = problem.samples_at(look.values, None if lines is None else lines[0])
-        values = problem.wrapped(look.values)
-        return problem.solution(values, samples, near.noise, False, "not followed", lines)
+                promised = np.inf
+            else:
+                before = float(np.sum(near.stacked()[0] ** 2))
+                r, j = near.samples.stacked(*lines, near.noise)
+                promised = max(promised, count * _log_ratio(before, unexplained_square(j, r)))
+        samples = problem.samples_at(values, None if lines is None else lines[0])
+        values = problem.wrapped(values)
+        solution = problem.solution(values, samples, near.noise, False, "not followed", lines)
+        return solution, promised
 
     def follow(
         self,

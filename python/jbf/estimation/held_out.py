@@ -116,12 +116,17 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
-    information = _RunInformation.of(problem, solution)
+    rows = [
+        solution.samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+        for i in range(count)
+    ]
+    factors = [(*triangular(r, j), len(r)) for r, j in rows]
+    squares = _squares(solution)
     parts = []
     for group in _groups(problem.campaign):
         rest = [k for k in range(count) if k not in group]
-        identified = _identified(solution, information.squares, information.squares[rest])
-        residuals = _predicted(problem, solution, information, group, rest, identified)
+        identified = _identified(solution, squares, squares[rest])
+        residuals = _predicted(problem, solution, factors, group, rest, identified)
         masks = tuple(np.ones(len(r), dtype=bool) for r in residuals)
         parts.append(HeldOutPart(tuple(group), masks, identified, tuple(residuals)))
     return parts
@@ -194,51 +199,23 @@ def _identified(solution: Solution, squares: Array, rest: Array) -> Mask:
     return ~unidentified
 
 
-@dataclass(frozen=True)
-class _RunInformation:
-    """Information of each run about the parameters, from the Jacobian at a solution.
+def _step(factors: Sequence[tuple[Array, Array, int]], rest: list[int]) -> tuple[Array, float]:
+    """Gauss-Newton step to the fit of the runs `rest`, and its square relative to noise.
 
-    Attributes
-    ----------
-    squares
-        Sums of squares of the derivatives, shape (runs, k).
-    factors
-        Innovations and derivatives in triangular form (`triangular`), one pair per run.
-    innovations
-        Number of innovations of each run.
+    `factors` has, for each run, its innovations and derivatives in triangular form (`triangular`),
+    and the number of innovations.
     """
-
-    squares: Array
-    factors: list[tuple[Array, Array]]
-    innovations: list[int]
-
-    @classmethod
-    def of(cls, problem: Problem, solution: Solution) -> _RunInformation:
-        """Compute the information of each run at a solution."""
-        factors, innovations = [], []
-        for i in range(len(problem.campaign.prepared)):
-            jacobian, residual = solution.jacobian[i], solution.residuals[i]
-            one = solution.samples.only([i])
-            r, j = one.stacked([residual], [jacobian], solution.noise)
-            factors.append(triangular(r, j))
-            innovations.append(len(r))
-        return cls(_squares(solution), factors, innovations)
-
-    def step(self, rest: list[int]) -> tuple[Array, float]:
-        """Gauss-Newton step to the fit of the runs `rest`, and its square relative to noise."""
-        r = np.concatenate([self.factors[i][0] for i in rest])
-        j = np.concatenate([self.factors[i][1] for i in rest])
-        step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
-        change = j @ step
-        count = max(sum(self.innovations[i] for i in rest), 1)
-        square = float(change @ change) * count / max(float(r @ r), 1e-300)
-        return np.asarray(step), square
+    r, j = (np.concatenate([factors[i][k] for i in rest]) for k in (0, 1))
+    step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
+    change = j @ step
+    count = max(sum(factors[i][2] for i in rest), 1)
+    return np.asarray(step), float(change @ change) * count / max(float(r @ r), 1e-300)
 
 
 def _predicted(
     problem: Problem,
     solution: Solution,
-    information: _RunInformation,
+    factors: Sequence[tuple[Array, Array, int]],
     group: list[int],
     rest: list[int],
     identified: Mask,
@@ -248,7 +225,7 @@ def _predicted(
     start = _at(problem, solution, held)
     step: Array | None = None
     if not held:
-        step_x, square = information.step(rest)
+        step_x, square = _step(factors, rest)
         target = problem.encode(solution.values) + step_x
         step = problem.decode(target, solution.values)
         inside = np.allclose(problem.encode(step), target, rtol=0.0, atol=1e-9)

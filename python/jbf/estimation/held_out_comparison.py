@@ -38,39 +38,8 @@ Units = list[tuple[int, Mask]]
 
 def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[float, int]:
     """Mean square of the innovations of a fit on the given samples, N^2, and their number."""
-    empty = [np.zeros((len(r), 0)) for r in solution.residuals]
-    r, _ = samples.stacked(solution.residuals, empty, noise)
+    r = samples.whitened(solution.residuals, noise)
     return float(r @ r) / max(len(r), 1), len(r)
-
-
-@dataclass(frozen=True)
-class _Moments:
-    """Sums over held-out samples that determine their predictive density.
-
-    Attributes
-    ----------
-    square, gradient, information
-        Sums of the squared errors, of errors times derivatives, and of products of derivatives.
-    identified
-        Which parameters the fitted samples identify.
-    """
-
-    square: float
-    gradient: Array
-    information: Array
-    identified: Mask
-
-    @classmethod
-    def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Moments:
-        """Compute the moments of the whitened residual and Jacobian of a held-out part."""
-        jacobian = [solution.jacobian[i] for i in part.runs]
-        e, j = samples.only(part.runs).stacked(part.residuals, jacobian, noise)
-        # Select after the whitening, because the first innovation of a held-out part depends on
-        # the preceding sample.
-        weight = [samples.weight[i] > 0.0 for i in part.runs]
-        held_out = np.concatenate([m[w] for m, w in zip(part.masks, weight, strict=True)])
-        e, j = e[held_out], j[held_out]
-        return cls(float(e @ e), j.T @ e, j.T @ j, part.identified)
 
 
 def predictive_deviance(
@@ -93,38 +62,33 @@ def predictive_deviance(
     variance
         Variance of the innovations, N^2.
     """
-    moments = [_Moments.of(part, solution, samples, noise) for part in parts]
-    total = np.sum([part.information for part in moments], axis=0)
-    prior = samples.settings.held_out.min_information
-    return sum(_part_deviance(part, total, variance, prior) for part in moments)
-
-
-def _part_deviance(part: _Moments, total: Array, variance: float, prior: float) -> float:
-    """Minus twice the log predictive density of one held-out part.
-
-    Parameters
-    ----------
-    part
-        Sums over the held-out samples of the part.
-    total
-        Information of all parts on the parameters, shape (k, k).
-    variance
-        Variance of the innovations, N^2.
-    prior
-        Prior information on each parameter, relative to the total.
-    """
-    size = np.sqrt(np.diag(total))
-    size[size <= 0.0] = 1.0
-    size, among = size[part.identified], np.ix_(part.identified, part.identified)
-    scale = np.outer(size, size)
-    # A parameter that no other run identifies has a prior of a hundred times its final error.
-    after = total[among] / scale + prior * np.eye(len(scale))
-    before = after - part.information[among] / scale
-    gradient = part.gradient[part.identified] / size
-    square = part.square - float(gradient @ np.linalg.solve(after, gradient))
-    _, after_det = np.linalg.slogdet(after)
-    _, before_det = np.linalg.slogdet(before)
-    return square / variance + float(after_det - before_det)
+    moments = []
+    for part in parts:
+        jacobian = [solution.jacobian[i] for i in part.runs]
+        e, j = samples.only(part.runs).stacked(part.residuals, jacobian, noise)
+        # Select after the whitening, because the first innovation of a held-out part depends on
+        # the preceding sample.
+        weight = [samples.weight[i] > 0.0 for i in part.runs]
+        held_out = np.concatenate([m[w] for m, w in zip(part.masks, weight, strict=True)])
+        e, j = e[held_out], j[held_out]
+        moments.append((part.identified, float(e @ e), j.T @ e, j.T @ j))
+    total = np.sum([information for *_, information in moments], axis=0)
+    sizes = np.sqrt(np.diag(total))
+    sizes[sizes <= 0.0] = 1.0
+    deviance = 0.0
+    for identified, square, gradient, information in moments:
+        size, among = sizes[identified], np.ix_(identified, identified)
+        scale = np.outer(size, size)
+        # A parameter that no other run identifies has a prior of a hundred times its final error.
+        prior = samples.settings.held_out.min_information * np.eye(len(scale))
+        after = total[among] / scale + prior
+        before = after - information[among] / scale
+        gradient = gradient[identified] / size
+        square -= float(gradient @ np.linalg.solve(after, gradient))
+        _, after_det = np.linalg.slogdet(after)
+        _, before_det = np.linalg.slogdet(before)
+        deviance += square / variance + float(after_det - before_det)
+    return deviance
 
 
 def stroke_of(p: Prepared) -> Strokes:

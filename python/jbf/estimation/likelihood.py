@@ -86,10 +86,10 @@ def share_of_gain(richer: Solution, simpler: Solution, share: float) -> float:
     solutions differ.
     """
     samples = common_samples(richer.samples, simpler.samples)
-    pairs = _innovation_pairs(richer, simpler, samples)
+    e_richer, e_simpler = _innovations(richer, simpler, samples)
     inflation = significant_inflation(
-        [e_simpler - e_richer for e_richer, e_simpler in pairs],
-        [e_richer for e_richer, _ in pairs],
+        [before - after for after, before in zip(e_richer, e_simpler, strict=True)],
+        e_richer,
         samples.steps_s,
         samples.settings.variance,
     )
@@ -102,8 +102,7 @@ def robust_gain(richer: Solution, simpler: Solution) -> float:
     Residuals are clipped at a few robust standard deviations of those of the richer solution.
     """
     samples = common_samples(richer.samples, simpler.samples)
-    pairs = _innovation_pairs(richer, simpler, samples)
-    e_richer, e_simpler = (np.concatenate(e) for e in zip(*pairs, strict=True))
+    e_richer, e_simpler = map(np.concatenate, _innovations(richer, simpler, samples))
     size, clip = robust_size(e_richer), samples.settings.noise.clip_sigma
     square = clipped_square(e_richer, size, clip)
     # After an exact fit to most samples, no sample counts as an outlier.
@@ -112,23 +111,18 @@ def robust_gain(richer: Solution, simpler: Solution) -> float:
     return len(e_richer) * (clipped_square(e_simpler, size, clip) / square - 1.0)
 
 
-def _innovation_pairs(
+def _innovations(
     richer: Solution, simpler: Solution, samples: Samples
-) -> list[tuple[Array, Array]]:
-    """Innovations of two solutions with the noise of the richer one, one pair per run.
+) -> tuple[list[Array], list[Array]]:
+    """Innovations of two solutions with the noise of the richer one, one array per run.
 
     The correlation due to the random effects of a run is removed.
     """
-
-    def whitened(residual: Array, run: int) -> Array:
-        """Innovations of a run without the correlation due to its random effects."""
-        empty = np.zeros((len(residual), 0))
-        return samples.only([run]).stacked([residual], [empty], richer.noise)[0]
-
-    return [
-        (whitened(richer.residuals[i], i), whitened(simpler.residuals[i], i))
-        for i in range(len(samples.runs))
+    by_run = [
+        [samples.whitened(s.residuals, richer.noise, [i]) for i in range(len(samples.runs))]
+        for s in (richer, simpler)
     ]
+    return by_run[0], by_run[1]
 
 
 def independent_share(

@@ -193,11 +193,17 @@ class Samples:
             j.append(rows[1])
         return np.concatenate(r), np.concatenate(j)
 
+    def whitened(
+        self, residuals: Sequence[Array], noise: Noise, selection: Sequence[int] | None = None
+    ) -> Array:
+        """Weighted innovations as one vector, without a Jacobian (`stacked`)."""
+        empty = [np.zeros((len(w), 0)) for w in self.weight]
+        return self.stacked(residuals, empty, noise, selection)[0]
+
     def cost(self, residuals: Sequence[Array], noise: Noise) -> float:
         """Cost of residuals: ``n log(mean square innovation)``, -2 x log likelihood + constant."""
         if self.between is not None or self.motion is not None:
-            empty = [np.zeros((len(r), 0)) for r in residuals]
-            r, _ = self.stacked(residuals, empty, noise)
+            r = self.whitened(residuals, noise)
             return len(r) * float(np.log(max(float(r @ r), 1e-300) / max(len(r), 1)))
         weighted = [r * w for r, w in zip(residuals, self.weight, strict=True)]
         return innovation_cost(noise, weighted, self.steps_s, [w > 0.0 for w in self.weight])

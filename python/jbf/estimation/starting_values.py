@@ -168,12 +168,6 @@ LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
 """Rules for linear axes where the catalogue values are those of a shaft."""
 
 
-def _run_time(campaign: Campaign) -> Starts:
-    """Starting values of a time constant, s: 1/3 and 1/10 of the duration of a typical run."""
-    median_s = float(np.median([p.run.duration_s for p in campaign.prepared]))
-    return (0.3 * median_s, 0.1 * median_s)
-
-
 def _reference_temperature(campaign: Campaign) -> Starts:
     """Starting value of the reference temperature of the lubricant's viscosity, C.
 
@@ -193,74 +187,61 @@ def _largest_n(campaign: Campaign) -> float:
     return max(float(np.quantile(np.abs(forces), 0.99)), 1e-5)
 
 
-CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
-    "mass": lambda c: () if (kg := mass(c)) is None else (kg,),
-    "pitch": lambda c: (*pitches(c, along=False), *known_pitches(c.rig)),
-    "ripple_pitch": lambda c: (*pitches(c, along=True), *known_pitches(c.rig)),
-    "run_time": _run_time,
-    "stroke_middle": lambda c: (0.5 * sum(stroke(c)),),
-    "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),
-}
-"""Rules that use the runs; if the result is empty, the catalogue values apply."""
-RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
-    "reference_temperature": _reference_temperature,
-    "cell_play": lambda c: (CELL_ERROR * _largest_n(c),),
-    "cell_cubic": lambda c: (CELL_ERROR / _largest_n(c) ** 2,),
-}
-"""Rules that apply to every law, because they concern quantities of the records."""
+def _run_times(campaign: Campaign) -> Starts:
+    """Starting values of a time constant, s: 1/3 and 1/10 of the duration of a typical run."""
+    median_s = float(np.median([p.run.duration_s for p in campaign.prepared]))
+    return (0.3 * median_s, 0.1 * median_s)
 
 
-def _starts_down_to_sample(page: Parameter, campaign: Campaign) -> Starts:
+def _down_to_sample(campaign: Campaign, page: Parameter) -> Starts:
     """Starting values of a delay, s: the catalogue's, and thirds down to the resolved one."""
     least, step = min(page.starts), float(np.median([p.step_s for p in campaign.prepared]))
     count = int(np.ceil(np.log(max(least / (0.25 * step), 1.0)) / np.log(3.0)))
     return (*page.starts, *(least / 3.0**k for k in range(1, count + 1)))
 
 
-RULES_BESIDE_THE_CATALOGUE: dict[str, Callable[[Parameter, Campaign], Starts]] = {
-    "lateness": _starts_down_to_sample,
+CAMPAIGN_RULES: dict[str, Callable[[Campaign, Parameter], Starts]] = {
+    "mass": lambda c, _: () if (kg := mass(c)) is None else (kg,),
+    "pitch": lambda c, _: (*pitches(c, along=False), *known_pitches(c.rig)),
+    "ripple_pitch": lambda c, _: (*pitches(c, along=True), *known_pitches(c.rig)),
+    "run_time": lambda c, _: _run_times(c),
+    "stroke_middle": lambda c, _: (0.5 * sum(stroke(c)),),
+    "stroke_half": lambda c, _: (0.5 * float(np.diff(stroke(c))[0]),),
+    "reference_temperature": lambda c, _: _reference_temperature(c),
+    "cell_play": lambda c, _: (CELL_ERROR * _largest_n(c),),
+    "cell_cubic": lambda c, _: (CELL_ERROR / _largest_n(c) ** 2,),
+    "lateness": _down_to_sample,
 }
-"""Rules whose starting values are added to those of the catalogue."""
+"""Rules that use the runs; if the result is empty, the catalogue values apply."""
+OF_ANY_LAW = ("reference_temperature", "cell_play", "cell_cubic", "lateness")
+"""Rules that apply to every law, because they concern quantities of the records."""
 PITCHES = ("pitch", "ripple_pitch")
 
 
-def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit the bounds of a transition speed to speeds that the data resolve.
+def _limited(page: Parameter, campaign: Campaign, in_newtons: bool) -> Parameter:
+    """Limit the upper bound of a parameter to the values that the data resolve.
 
     A film with a transition speed of several times the highest recorded speed has no influence on
-    the record, and its equations are stiff.
+    the record, and its equations are stiff. The travel must contain several periods of a pitch. The
+    hysteresis of a load cell is limited by `MAX_CELL_HYSTERESIS`. A delay is limited to a fraction
+    of the shortest run, and any other time to the longest run, since slower processes are not
+    identifiable.
     """
-    top = max(float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared)
-    upper = min(
-        page.upper, max(campaign.settings.film.max_speed_ratio * top, 2.0 * max(page.starts))
-    )
-    return replace(page, upper=upper)
-
-
-def _limited_by_travel(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit the bounds of a pitch: the travel must contain several periods."""
-    upper = min(page.upper, longest_pitch(campaign))
-    return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
-
-
-def _limited_by_force(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit the half-width of the hysteresis of a load cell (`MAX_CELL_HYSTERESIS`)."""
-    largest_n = _largest_n(campaign)
-    upper = min(page.upper, MAX_CELL_HYSTERESIS * largest_n)
-    return replace(page, upper=max(upper, page.lower + 1e-6 * (largest_n or 1.0)))
-
-
-def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit the bounds of a time parameter by the duration of the records.
-
-    The limit of a delay is a fraction of the shortest run. The limit of any other time is the
-    longest run, since slower processes are not identifiable.
-    """
-    durations = [p.run.duration_s for p in campaign.prepared]
-    share = campaign.settings.delays.max_run_share
-    most = share * min(durations) if page.start == "lateness" else max(durations)
-    upper = min(page.upper, most)
-    return replace(page, upper=upper) if upper > page.lower else page
+    limit = np.inf
+    if page.bound == "transition_speed":
+        top = max(float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared)
+        limit = max(campaign.settings.film.max_speed_ratio * top, 2.0 * max(page.starts))
+    elif page.start in PITCHES and in_newtons:
+        limit = max(longest_pitch(campaign), page.lower * (1.0 + 1e-6))
+    elif page.start == "cell_play":
+        largest_n = _largest_n(campaign)
+        limit = max(MAX_CELL_HYSTERESIS * largest_n, page.lower + 1e-6 * largest_n)
+    elif page.unit == "s":
+        durations = [p.run.duration_s for p in campaign.prepared]
+        share = campaign.settings.delays.max_run_share
+        limit = share * min(durations) if page.start == "lateness" else max(durations)
+        limit = limit if limit > page.lower else np.inf
+    return replace(page, upper=min(page.upper, limit))
 
 
 def _inside(page: Parameter, starts: Starts) -> Parameter:
@@ -280,27 +261,15 @@ def with_starts(
     A law that scales with the load keeps the catalogue values, because its coefficients are not in
     newtons. For a law with a film, the data limit the transition speed.
     """
-    rules = dict(RULES) if in_newtons else {}
-    if in_newtons and campaign.rig.bearing is None:
-        rules |= LINEAR_RULES
     sizes = scales(campaign) if in_newtons else None
+    rules = RULES if campaign.rig.bearing is not None else RULES | LINEAR_RULES
     with_values = {}
     for name, page in pages.items():
-        if page.bound == "transition_speed":
-            page = _bounded(page, campaign)
+        page = _limited(page, campaign, in_newtons)
+        starts = page.starts if page.unit == "s" else ()
         if sizes is not None and page.start in rules:
-            page = _inside(page, rules[page.start](sizes))
-        if in_newtons and page.start in CAMPAIGN_RULES:
-            if page.start in PITCHES:
-                page = _limited_by_travel(page, campaign)
-            page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
-        if page.start == "cell_play":
-            page = _limited_by_force(page, campaign)
-        if page.start in RULES_OF_ANY_LAW:
-            page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))
-        if page.start in RULES_BESIDE_THE_CATALOGUE:
-            page = _inside(page, RULES_BESIDE_THE_CATALOGUE[page.start](page, campaign))
-        if page.unit == "s":
-            page = _inside(_within_the_record(page, campaign), page.starts)
-        with_values[name] = page
+            starts = rules[page.start](sizes)
+        elif page.start in (CAMPAIGN_RULES if in_newtons else OF_ANY_LAW):
+            starts = CAMPAIGN_RULES[page.start](campaign, page)
+        with_values[name] = _inside(page, starts)
     return with_values

@@ -14,9 +14,8 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.starting_values import (
     CAMPAIGN_RULES,
     LINEAR_RULES,
+    OF_ANY_LAW,
     RULES,
-    RULES_BESIDE_THE_CATALOGUE,
-    RULES_OF_ANY_LAW,
     Scales,
     scales,
     with_starts,
@@ -66,7 +65,7 @@ def on_bearing() -> Campaign:
 
 
 def test_every_starting_value_rule_named_in_the_catalogue_exists() -> None:
-    rules = (RULES, LINEAR_RULES, CAMPAIGN_RULES, RULES_OF_ANY_LAW, RULES_BESIDE_THE_CATALOGUE)
+    rules = (RULES, LINEAR_RULES, CAMPAIGN_RULES, OF_ANY_LAW)
     pages = [p for x in (*laws().values(), *effects().values()) for p in x.parameters]
     assert {p.start for p in pages} == {"catalogue", *(name for rule in rules for name in rule)}
 

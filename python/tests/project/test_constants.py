@@ -118,7 +118,7 @@ NUMERICAL = {
         diagnosis.terms.noise_variance: START_FREEDOM
         estimation.campaign: HUM
         estimation.pitches: LINES BINS_A_PITCH KNOTS
-        estimation.starting_values: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES RULES_OF_ANY_LAW
+        estimation.starting_values: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES
     """,
     "definition of an effect": """
         estimation.starting_values: BEYOND MAX_CELL_HYSTERESIS

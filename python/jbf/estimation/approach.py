@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.levenberg_marquardt import SearchResult
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import SearchResult, Visited, search
+from jbf.estimation.search import Visited, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import Parameter, find_effect
 
@@ -97,7 +98,9 @@ class Approach:
             return self._kept[k]
         names, pages = self.problem.names, list(self.problem.parameters.values())
         known = {**self._seeds[k], **self.problem.fixed}
-        first = [known.get(name, _null(page)) for name, page in zip(names, pages, strict=True)]
+        first = [
+            known.get(name, null_or_start(page)) for name, page in zip(names, pages, strict=True)
+        ]
         kept = [np.array(first)]
         unknown = (i for i, name in enumerate(names) if name not in known)
         for _, group in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
@@ -223,8 +226,8 @@ def approach(
     return Approach(problem, seeds).follow(evaluations, followed=followed, steps=steps)
 
 
-def _null(page: Parameter) -> float:
-    """Value of a parameter at which its effect has no influence, or its first starting value."""
+def null_or_start(page: Parameter) -> float:
+    """Finite value of a parameter without influence of its effect, or its first starting value."""
     null = page.null
     return null if null is not None and np.isfinite(null) else page.starts[0]
 

@@ -54,23 +54,19 @@ def checked_bounds(
     return checked
 
 
-def bounded_page(page: Parameter, low: float, high: float) -> Parameter:
-    """Return a catalogue entry with the given bounds and its starting values clipped to them.
-
-    A null outside the bounds no longer applies. An angle is not wrapped, because wrapping could
-    leave the bounds.
-    """
-    starts = tuple(dict.fromkeys(min(max(x, low), high) for x in page.starts))
-    null = page.null if page.null is not None and low <= page.null <= high else None
-    return replace(page, lower=low, upper=high, starts=starts, null=null, period=None)
-
-
 def bounded_pages(pages: Mapping[str, Parameter], bounds: Bounds) -> dict[str, Parameter]:
-    """Return catalogue entries by parameter name, with the bounds imposed by the user."""
-    return {
-        name: bounded_page(page, *bounds[name]) if name in bounds else page
-        for name, page in pages.items()
-    }
+    """Return catalogue entries by parameter name, with the bounds imposed by the user.
+
+    Starting values are clipped to the bounds, and a null outside of them no longer applies. An
+    angle is not wrapped, because wrapping could leave the bounds.
+    """
+    bounded = dict(pages)
+    for name, (low, high) in bounds.items():
+        page = pages[name]
+        starts = tuple(dict.fromkeys(min(max(x, low), high) for x in page.starts))
+        null = page.null if page.null is not None and low <= page.null <= high else None
+        bounded[name] = replace(page, lower=low, upper=high, starts=starts, null=null, period=None)
+    return bounded
 
 
 def bound_note(page: Parameter, value: float, error: float) -> str | None:

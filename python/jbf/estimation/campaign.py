@@ -195,11 +195,6 @@ class Campaign:
         return 0.0 if motion is None else motion.mean_share(self.samples.weight)
 
     @property
-    def motion_uncertain(self) -> bool:
-        """Whether errors of the motion are a large part of the variance of the residuals."""
-        return self.motion_share > self.settings.conditions.max_motion_share
-
-    @property
     def has_loads(self) -> bool:
         """Whether the load varies, within a run or between runs."""
         stated = self.rig.load.normal_n if self.rig.load is not None else None
@@ -220,22 +215,14 @@ class Campaign:
             return None
         return float(min(map(np.min, temperatures))), float(max(map(np.max, temperatures)))
 
-    @property
-    def temperatures_k(self) -> float | None:
-        """Range of the recorded temperatures of all runs, K; None if a run has no temperatures."""
-        if self.temperature_range_c is None:
-            return None
-        low, high = self.temperature_range_c
-        return high - low
-
     def missing_requirement(self, effect: Effect) -> str | None:
         """Reason why the runs cannot show an effect; None if they meet all of its requirements."""
-        needs = effect.needs
+        needs, conditions = effect.needs, self.settings.conditions
         if coasting(self.rig) is not None and effect.name in NEEDS_RECORDED_FORCE:
             return "no force was recorded"
         if effect.name in NEEDS_TIME and self.steady:
             return "steady states do not contain it"
-        if effect.name in DISTORTS_FORCE and self.motion_uncertain:
+        if effect.name in DISTORTS_FORCE and self.motion_share > conditions.max_motion_share:
             return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
             if column not in COLUMNS_OF_EVERY_RUN and any(
@@ -251,12 +238,10 @@ class Campaign:
         if "loads" in needs and not self.has_loads:
             return "all runs have the same load"
         if "temperatures" in needs:
-            span_k, least_k = (
-                self.temperatures_k,
-                self.settings.conditions.min_temperature_difference_k,
-            )
-            if span_k is None:
+            if self.temperature_range_c is None:
                 return "the column temperature_c is missing in some runs"
+            low, high = self.temperature_range_c
+            span_k, least_k = high - low, conditions.min_temperature_difference_k
             if span_k < least_k:
                 return (
                     f"the temperature varies by {span_k:.2g} K only; the effect "
@@ -302,9 +287,16 @@ class Campaign:
 
     @property
     def moving(self) -> list[tuple[Prepared, Mask]]:
-        """The runs, each with the mask of the included samples in motion."""
-        pairs = zip(self.prepared, self.samples.counted, strict=True)
-        return [(p, _moving(p, counted)) for p, counted in pairs]
+        """The runs, each with the mask of the included samples in motion.
+
+        Speeds near zero, which may be noise, are excluded.
+        """
+        pairs = []
+        for p, counted in zip(self.prepared, self.samples.counted, strict=True):
+            speed = np.abs(p.motion.velocity)
+            top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
+            pairs.append((p, np.asarray(counted & (speed > HUM * top))))
+        return pairs
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """Return the campaign without the samples that are True in the masks, one mask per run."""
@@ -344,7 +336,11 @@ def _each(
             prepared[i] = Prepared.of(rig, run, settings=settings)
         except NoMotion as error:
             refused.append(error)
-            without_motion.append(_without_motion(run, error))
+            words = f"{error.problem}: the run is left out"
+            count = float(len(run))
+            without_motion.append(
+                Finding("no_motion", "velocity_m_s", run.name, count, "samples", "left out", words)
+            )
     if not prepared:
         raise refused[0]
     rates = {i: rate for i, p in prepared.items() if (rate := p.drawn_at_hz) > 0.0}
@@ -361,18 +357,3 @@ def _each(
                 rig, runs[i], None if i in rates else period_s, starts, settings
             )
     return prepared, without_motion
-
-
-def _without_motion(run: Run, error: NoMotion) -> Finding:
-    """Finding for a run that is excluded because it contains no motion."""
-    words = f"{error.problem}: the run is left out"
-    return Finding(
-        "no_motion", "velocity_m_s", run.name, float(len(run)), "samples", "left out", words
-    )
-
-
-def _moving(p: Prepared, counted: Mask) -> Mask:
-    """Mask of the included samples in motion, without speeds near zero that may be noise."""
-    speed = np.abs(p.motion.velocity)
-    top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
-    return np.asarray(counted & (speed > HUM * top))

@@ -24,7 +24,8 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import corrected_for_delay, shifted
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import NEAR_MINIMUM, search
+from jbf.estimation.robust_fit import huber
+from jbf.estimation.search import NEAR_MINIMUM, search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 
@@ -297,12 +298,9 @@ def fit_with_errors(
         slopes = tuple(delay_slope(problem, values, p) for p in prepared)
         motion = replace(motion, by_delay=slopes)
     plain, weights = problem.samples_at(values), []
-    huber = problem.campaign.settings.motion.huber_sigma
+    tuning = problem.campaign.settings.motion.huber_sigma
     for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
         sd = motion.noise * np.sqrt(1.0 + motion.variance_ratio(i))
-        ratio = np.maximum(np.abs(residual) / sd, 1e-300)
-        weights.append(weight * np.sqrt(np.minimum(1.0, huber / ratio)))
+        weights.append(weight * huber(np.abs(residual) / sd, tuning))
     samples = replace(plain, weight=tuple(weights), motion=motion)
-    end = search(problem, samples, values, WHITE, EVALUATIONS, least_gain=NEAR_MINIMUM)
-    values = problem.wrapped(end.values)
-    return problem.solution(values, samples, WHITE, end.converged, end.message)
+    return search_solution(problem, samples, values, WHITE, EVALUATIONS, NEAR_MINIMUM)

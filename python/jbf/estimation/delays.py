@@ -28,7 +28,6 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 from jbf.models.delayed_reading import TAU
-from jbf.models.driven import Driven
 
 Array = npt.NDArray[np.float64]
 Clocks = Literal["by run", "drift", "drift and delay"]
@@ -153,24 +152,17 @@ def drift_step(problem: Problem, solution: Solution, with_delay: bool = False) -
 
 
 def fine_force(problem: Problem, values: Array, p: Prepared) -> tuple[Array, Array]:
-    """Times of a run at most `FINE_S` apart, s, and the predicted force at these times, N."""
-    instants = fine_instants(p)
-    return instants, problem.chain.predict(values, [fine_motion(p)])[0]
+    """Times of a run at most `FINE_S` apart, s, and the predicted force at these times, N.
 
-
-def fine_instants(p: Prepared) -> Array:
-    """Times, s, that divide the sampling intervals of a run into intervals of at most `FINE_S`."""
+    The times divide the sampling intervals of the run.
+    """
     count = max(int(np.ceil(p.step_s / FINE_S)), 1)
     samples = np.arange(len(p.run), dtype=np.float64)
     place = np.linspace(0.0, len(p.run) - 1.0, count * (len(p.run) - 1) + 1)
-    return np.asarray(np.interp(place, samples, p.run.time_s), dtype=np.float64)
-
-
-def fine_motion(p: Prepared) -> Driven:
-    """Motion of a run at the times of `fine_instants`."""
-    instants = fine_instants(p)
+    instants = np.interp(place, samples, p.run.time_s).astype(np.float64)
     run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction))
-    return core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
+    motion = core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
+    return instants, problem.chain.predict(values, [motion])[0]
 
 
 def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
@@ -231,7 +223,7 @@ def _rows(
             "drift and delay": [drift, slope],
         }[clocks]
         reach = int(np.ceil(problem.campaign.settings.delays.linear_s / p.step_s))
-        far = ~ndimage.binary_dilation(~p.slides, iterations=reach)
+        far = ~ndimage.binary_dilation(~p.motion.slides, iterations=reach)
         samples = solution.samples.only([i]).within([far])
         derivatives = np.column_stack([solution.jacobian[i][:, list(columns)], *by_clock])
         r, j = samples.stacked([solution.residuals[i]], [derivatives], solution.noise)

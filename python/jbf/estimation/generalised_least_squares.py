@@ -22,7 +22,7 @@ from jbf.estimation.delayed_fits import (
     near_solution,
 )
 from jbf.estimation.minimum import polish
-from jbf.estimation.motion_error_scale import estimate_motion_errors, penalised_deviance
+from jbf.estimation.motion_error_scale import estimate_motion_errors
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
@@ -34,7 +34,7 @@ from jbf.estimation.posterior_motions import (
     with_scaled_intensity,
 )
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import search
+from jbf.estimation.search import search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 
@@ -74,7 +74,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     # Systematic errors are the changes of the parameters with less smoothing and, if their
     # likelihoods are similar, with the other clock and without located corners.
     solution = polish(best.problem, best.solution)
-    others = [with_less_smoothing(best.problem, solution)[1]]
+    others = [with_less_smoothing(best.problem, solution)]
     unclear = settings.motion.max_clock_deviance
     others += [
         polish(other.problem, other.solution)
@@ -87,8 +87,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     return best.problem, replace(solution, systematic=change)
 
 
-def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Return the problem with a motion that is smoothed less, and its solution.
+def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
+    """Return the solution of the problem with a motion that is smoothed less.
 
     The intensity of the process noise is multiplied by `roughness_factor`; weights, corners, jumps
     and the projection of a delay are kept. The change of a result measures its smoothing bias.
@@ -100,9 +100,7 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, 
     by_delay = None if before is None else before.by_delay
     motion = replace(estimate_motion_errors(problem, near), by_delay=by_delay)
     samples = replace(solution.samples, motion=motion)
-    end = search(problem, samples, solution.values, solution.noise, EVALUATIONS)
-    values = problem.wrapped(end.values)
-    return problem, problem.solution(values, samples, solution.noise, end.converged, end.message)
+    return search_solution(problem, samples, solution.values, solution.noise, EVALUATIONS)
 
 
 def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
@@ -165,12 +163,13 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
     samples = solution.samples
 
     def fitted_with(tried: Problem) -> tuple[float, Solution]:
-        """Deviance and solution of the fit to a problem."""
+        """Deviance, with the prior of the errors' scale, and solution of the fit to a problem."""
         near = tried.solution(solution.values, samples, WHITE)
         fitted = fit_with_errors(tried, near, estimate_motion_errors(tried, near))
         errors = estimate_motion_errors(tried, fitted)
-        fitted_deviance = penalised_deviance(tried, errors, fitted.residuals, samples.weight)
-        return fitted_deviance, replace(fitted, samples=samples)
+        deviance = errors.whitening(samples.weight).deviance(fitted.residuals)
+        prior = (float(np.log(errors.scale)) / settings.motion.scale_prior) ** 2
+        return deviance + prior, replace(fitted, samples=samples)
 
     first, factor = problem, 1.0
     least, _ = fitted_with(problem)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.approach import null_or_start
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.least_squares import triangular
 from jbf.estimation.problem import Problem
@@ -290,12 +291,8 @@ def _with_held(problem: Problem, campaign: Campaign, held: dict[str, float]) -> 
 
 def _held(problem: Problem, unidentified: Mask) -> dict[str, float]:
     """Parameters that are not identifiable, by name, with their null or starting value."""
-    held = {}
-    for i in np.asarray(problem.open)[unidentified]:
-        page = problem.parameters[problem.names[i]]
-        null = page.null if page.null is not None and np.isfinite(page.null) else None
-        held[problem.names[i]] = page.starts[0] if null is None else null
-    return held
+    names = [problem.names[i] for i in np.asarray(problem.open)[unidentified]]
+    return {name: null_or_start(problem.parameters[name]) for name in names}
 
 
 def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:

@@ -97,7 +97,7 @@ def stroke_of(p: Prepared) -> Strokes:
     A stroke ends where the motion reverses.
     """
     motion = p.motion
-    moving = np.flatnonzero(p.slides)
+    moving = np.flatnonzero(p.motion.slides)
     strokes = np.full(len(motion.velocity), -1, dtype=np.intp)
     if len(moving):
         sign = np.sign(motion.velocity[moving])

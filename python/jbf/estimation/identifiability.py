@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.bounds import at_bound, bound_note
-from jbf.estimation.jumps import active_effects
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import StandardErrors
@@ -99,13 +98,18 @@ def idle_effects(
     fixed
         Names of parameters that were not fitted.
     """
-    errors = errors or {}
-    snapped = []
-    for (name, page), value in zip(pages.items(), values, strict=True):
-        is_null = at_null(page, value, errors.get(name, math.nan), fixed=name in fixed)
-        snapped.append(page.null if is_null and page.null is not None else math.nan)
-    active = active_effects(effects, pages, snapped)
-    return tuple(name for name in effects if name not in active)
+    errors, named = errors or {}, list(zip(pages.items(), values, strict=True))
+
+    def idle(effect: str) -> bool:
+        """Whether all parameters of the effect that have a null are at it."""
+        null = [
+            at_null(page, value, errors.get(name, math.nan), fixed=name in fixed)
+            for (name, page), value in named
+            if page.null is not None and name.startswith(f"{effect}.")
+        ]
+        return bool(null) and all(null)
+
+    return tuple(filter(idle, effects))
 
 
 def at_null(page: Parameter, value: float, error: float = math.nan, *, fixed: bool = False) -> bool:
@@ -151,50 +155,40 @@ def reset_unidentified(
     start
         The user's starting values by full name; by default those of the catalogue.
     """
-    reset = Reset(solution.values, solution.residuals, {})
-    reset = _idle_to_null(reset, problem, solution, errors, start)
-    for k, i in enumerate(problem.open):
-        name = problem.names[i]
-        if errors.sensitive[k] or name in reset.notes:
-            continue
-        page, value = problem.parameters[name], float(reset.values[i])
-        neutral = start.get(name, _neutral(problem, name, reset.values))
-        note = f"not determined: the data exclude only {neutral:.3g}"
-        for share in SHARES:
-            values = reset.values.copy()
-            values[i] = _moved_towards(page, value, neutral, share)
-            residuals = _same(problem, solution, values)
-            if residuals is not None:
-                note = NEVER_MOVED if share == 1.0 else note
-                reset = Reset(values, residuals, reset.notes)
-                break
-        reset = Reset(reset.values, reset.residuals, {**reset.notes, name: note})
-    return reset
-
-
-def _idle_to_null(
-    reset: Reset,
-    problem: Problem,
-    solution: Solution,
-    errors: StandardErrors,
-    start: Mapping[str, float],
-) -> Reset:
-    """Set the parameters of effects without influence to exactly their null."""
+    values = solution.values
+    notes: dict[str, str] = {}
+    residuals: Sequence[Array] = solution.residuals
     by_name = {problem.names[i]: errors.error(k) for k, i in enumerate(problem.open)}
     idle = idle_effects(
-        problem.effects, problem.parameters, solution.values.tolist(), by_name, problem.fixed
+        problem.effects, problem.parameters, values.tolist(), by_name, problem.fixed
     )
     for effect in idle:
         indices = [i for i in problem.open if problem.names[i].startswith(f"{effect}.")]
-        values = reset.values.copy()
+        trial = values.copy()
         for i in indices:
             name, page = problem.names[i], problem.parameters[problem.names[i]]
-            values[i] = start.get(name, page.starts[0]) if page.null is None else page.null
-        residuals = _same(problem, solution, values)
-        if residuals is not None:
-            notes = dict.fromkeys((problem.names[i] for i in indices), NO_EFFECT)
-            reset = Reset(values, residuals, {**reset.notes, **notes})
-    return reset
+            trial[i] = start.get(name, page.starts[0]) if page.null is None else page.null
+        unchanged = _same(problem, solution, trial)
+        if unchanged is not None:
+            values, residuals = trial, unchanged
+            notes |= dict.fromkeys((problem.names[i] for i in indices), NO_EFFECT)
+    for k, i in enumerate(problem.open):
+        name = problem.names[i]
+        if errors.sensitive[k] or name in notes:
+            continue
+        page, value = problem.parameters[name], float(values[i])
+        neutral = start.get(name, _neutral(problem, name, values))
+        notes[name] = f"not determined: the data exclude only {neutral:.3g}"
+        for share in SHARES:
+            trial = values.copy()
+            trial[i] = _moved_towards(page, value, neutral, share)
+            unchanged = _same(problem, solution, trial)
+            if unchanged is not None:
+                values, residuals = trial, unchanged
+                if share == 1.0:
+                    notes[name] = NEVER_MOVED
+                break
+    return Reset(values, residuals, notes)
 
 
 def _neutral(problem: Problem, name: str, values: Array) -> float:

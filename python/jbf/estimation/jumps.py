@@ -89,30 +89,17 @@ def samples_near_jumps(
         prepared, samples.counted, samples.weight, predictions, strict=True
     ):
         if moves:
-            c, w = _without_jumps(p, c, w, prediction, settings)
+            # The prediction is wrong by half of the jump.
+            change = jumps(prediction, settings)
+            c = c & (change == 0.0)
+            w = w * _share(0.5 * change, _residual_rms(p, c, prediction))
         if spreads:
-            c, w = _without_reversals(p, c, w, prediction, settings)
+            noise_rms = _residual_rms(p, c, prediction)
+            error_n = timing_errors(p, prediction, settings.max_timing_error * noise_rms)
+            c, w = c & (error_n == 0.0), w * _share(error_n, noise_rms)
         counted.append(c)
         weight.append(w)
     return replace(samples, counted=tuple(counted), weight=tuple(weight))
-
-
-def _without_jumps(
-    p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
-) -> tuple[Mask, Array]:
-    """Exclude samples next to a jump, and compute weights for an error of half the jump."""
-    change = jumps(prediction, settings)
-    kept = counted & (change == 0.0)
-    return kept, weight * _share(0.5 * change, _residual_rms(p, kept, prediction))
-
-
-def _without_reversals(
-    p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
-) -> tuple[Mask, Array]:
-    """Exclude samples after a reversal of uncertain time, and compute weights for its error."""
-    noise_rms = _residual_rms(p, counted, prediction)
-    error_n = timing_errors(p, prediction, settings.max_timing_error * noise_rms)
-    return counted & (error_n == 0.0), weight * _share(error_n, noise_rms)
 
 
 def _residual_rms(p: Prepared, kept: Mask, prediction: Array) -> float:

@@ -7,7 +7,6 @@ to triangular factors.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import overload
 
 import numpy as np
 import numpy.typing as npt
@@ -47,13 +46,7 @@ class OnDemand(Sequence[Array]):
     def __len__(self) -> int:
         return self._count
 
-    @overload
-    def __getitem__(self, index: int) -> Array: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Array]: ...
-    def __getitem__(self, index: int | slice) -> Array | list[Array]:
-        if isinstance(index, slice):
-            return [self._make(i) for i in range(self._count)[index]]
+    def __getitem__(self, index: int) -> Array:  # type: ignore[override]
         return self._make(range(self._count)[index])
 
 
@@ -103,23 +96,25 @@ def least_squares(design: Array, target: Array) -> Array:
     return np.asarray(step / size)
 
 
-def unexplained(design: Array, target: Array) -> Array:
-    """Residual of the projection of a target on the column space of a design."""
+def _unit_columns(design: Array) -> Array:
+    """Columns of a design scaled to unit length, without those that are zero."""
     # Scale by powers of two, which are exact, so that the squares of large columns do not overflow.
     _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
     design = np.ldexp(design, -power)
     size = np.linalg.norm(design, axis=0)
-    design = design[:, size > 0.0] / size[size > 0.0]
+    return np.asarray(design[:, size > 0.0] / size[size > 0.0])
+
+
+def unexplained(design: Array, target: Array) -> Array:
+    """Residual of the projection of a target on the column space of a design."""
+    design = _unit_columns(design)
     step, *_ = np.linalg.lstsq(design, target, rcond=INDEPENDENT)
     return np.asarray(target - design @ step)
 
 
 def spanned(design: Array) -> Array:
     """Orthonormal basis of the column space of a design, shape (n, rank)."""
-    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
-    design = np.ldexp(design, -power)
-    size = np.linalg.norm(design, axis=0)
-    axes, sizes, _ = np.linalg.svd(design[:, size > 0.0] / size[size > 0.0], full_matrices=False)
+    axes, sizes, _ = np.linalg.svd(_unit_columns(design), full_matrices=False)
     return np.asarray(axes[:, sizes > INDEPENDENT * np.max(sizes, initial=0.0)])
 
 

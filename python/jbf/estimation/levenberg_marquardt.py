@@ -37,10 +37,13 @@ TRUSTED = 0.25
 
 
 @dataclass(frozen=True)
-class Minimum:
-    """End of a search: the variables, whether they are a minimum, and why the search ended."""
+class SearchResult:
+    """End of a search: its variables, or the parameter values; and why the search ended.
 
-    x: Array
+    `converged` states whether they are a minimum.
+    """
+
+    values: Array
     converged: bool
     message: str
 
@@ -52,7 +55,7 @@ def minimise(
     longest: Array,
     evaluations: int,
     tolerance: float,
-) -> Minimum:
+) -> SearchResult:
     """Minimise the sum of squares of residuals within bounds.
 
     Parameters
@@ -74,7 +77,7 @@ def minimise(
 
     Returns
     -------
-    Minimum
+    SearchResult
         The variables with the smallest sum of squares, and why the search ended.
     """
     low, high = bounds
@@ -90,7 +93,7 @@ def minimise(
         linear = residual - jacobian @ step
         predicted = square - float(linear @ linear)
         if predicted <= tolerance * square:
-            return Minimum(x, True, "the sum of squares decreases by less than the tolerance")
+            return SearchResult(x, True, "the sum of squares decreases by less than the tolerance")
         trial = np.clip(x + step, low, high)
         new_residual, new_jacobian = evaluate(trial)
         decrease = square - float(new_residual @ new_residual)
@@ -100,13 +103,17 @@ def minimise(
             damping *= max(LEAST_FACTOR, 1.0 - (2.0 * ratio - 1.0) ** 3)
             increase = FIRST_INCREASE
             if decrease <= tolerance * square and ratio > TRUSTED:
-                return Minimum(x, True, "the sum of squares decreases by less than the tolerance")
+                return SearchResult(
+                    x, True, "the sum of squares decreases by less than the tolerance"
+                )
         else:
             damping *= increase
             increase *= 2.0
             if damping > MAX_DAMPING:
-                return Minimum(x, np.isfinite(decrease), "no step decreases the sum of squares")
-    return Minimum(x, False, "the maximum number of evaluations is reached")
+                return SearchResult(
+                    x, np.isfinite(decrease), "no step decreases the sum of squares"
+                )
+    return SearchResult(x, False, "the maximum number of evaluations is reached")
 
 
 def _bounded_step(

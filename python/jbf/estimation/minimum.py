@@ -14,11 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.approach import TRIAL_EVALUATIONS, approach
+from jbf.estimation.levenberg_marquardt import SearchResult
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import NEAR_MINIMUM, SearchResult, other_peaks, search
+from jbf.estimation.search import NEAR_MINIMUM, other_peaks, search, search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
 
@@ -78,9 +79,7 @@ def settle(
 
 def polish(problem: Problem, near: Solution) -> Solution:
     """Continue a fit to the smallest tolerance of a search, with the same samples and noise."""
-    end = search(problem, near.samples, near.values, near.noise, MAX_EVALUATIONS)
-    values = problem.wrapped(end.values)
-    exact = problem.solution(values, near.samples, near.noise, end.converged, end.message)
+    exact = search_solution(problem, near.samples, near.values, near.noise, MAX_EVALUATIONS)
     return replace(exact, systematic=near.systematic)
 
 
@@ -113,16 +112,9 @@ def search_peaks(problem: Problem, near: Solution, least_gain: float = 0.0) -> S
 
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     """Minimise the sum of squares from all starting points to convergence, with other maxima."""
-    if find_law(problem.law).has_film:
-        near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT)
-    else:
-        near = approach(
-            problem,
-            seeds,
-            MAX_EVALUATIONS,
-            followed=FOLLOWED_IN_A_FIT,
-            steps=MAX_EVALUATIONS,
-        )
+    # Without a film, each starting point is searched to convergence.
+    steps = TRIAL_EVALUATIONS if find_law(problem.law).has_film else MAX_EVALUATIONS
+    near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT, steps=steps)
     return search_peaks(problem, settle(problem, near))
 
 
@@ -138,21 +130,16 @@ def not_above_nested(problem: Problem, solution: Solution) -> Solution:
     law = Problem(problem.campaign, problem.law, problem.clock, (), fixed, problem.bounds)
     if not law.open:
         return solution
-    nested = settle(law, approach(law, [{}], NESTED_EVALUATIONS)).values
+    nested = law.values_by_name(settle(law, approach(law, [{}], NESTED_EVALUATIONS)).values)
     start = solution.values.copy()
     for i, (name, page) in enumerate(problem.parameters.items()):
-        if name in problem.fixed:
-            continue
-        if name in law.names:
-            start[i] = nested[law.names.index(name)]
-        elif page.null is not None:
-            start[i] = np.clip(page.null, page.lower, page.upper)
-        else:
-            start[i] = page.starts[0]
+        if name not in problem.fixed:
+            null = None if page.null is None else np.clip(page.null, page.lower, page.upper)
+            start[i] = nested.get(name, page.starts[0] if null is None else null)
     samples = solution.samples
     if problem.square(start, samples) >= problem.square(solution.values, samples):
         return solution
-    end = search(problem, samples, start, solution.noise, MAX_EVALUATIONS)
-    candidate = problem.solution(problem.wrapped(end.values), samples, solution.noise, False)
+    end = search_solution(problem, samples, start, solution.noise, MAX_EVALUATIONS)
+    candidate = replace(end, converged=False)
     better = problem.square(candidate.values, samples) < problem.square(solution.values, samples)
     return settle(problem, candidate) if better else solution

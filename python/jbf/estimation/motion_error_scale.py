@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -81,7 +80,8 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         def penalised(log_noise: float) -> float:
             """Penalised deviance at the logarithm of noise / RMS."""
             deviance = squares * float(np.exp(-2.0 * log_noise)) + 2.0 * count * log_noise
-            return deviance + unit.log_determinant + _prior(problem, log_ratio + log_noise)
+            prior = ((log_ratio + log_noise) / settings.scale_prior) ** 2
+            return deviance + unit.log_determinant + prior
 
         bounds = max(lowest, -MOST_SCALE - log_ratio), min(MOST_NOISE, MOST_SCALE - log_ratio)
         found = optimize.minimize_scalar(penalised, bounds=bounds, method="bounded")
@@ -97,19 +97,3 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         options={"xatol": RATIO_STEP},
     )
     return at(float(found.x), profiled(float(found.x))[1])
-
-
-def _prior(problem: Problem, log_scale: float) -> float:
-    """Minus twice the log prior density of the logarithm of the scale of the motion's errors."""
-    return (log_scale / problem.campaign.settings.motion.scale_prior) ** 2
-
-
-def penalised_deviance(
-    problem: Problem,
-    motion: ErrorsInMotion,
-    residuals: Sequence[Array],
-    weights: Sequence[Array],
-) -> float:
-    """Minus twice the log likelihood, plus the prior of the scale of the motion's errors."""
-    deviance = motion.whitening(weights).deviance(residuals)
-    return deviance + _prior(problem, float(np.log(motion.scale)))

@@ -12,12 +12,11 @@ import numpy.typing as npt
 
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
-from jbf.estimation.settings import DEFAULT, NoiseSettings, PeriodSettings, Settings
+from jbf.estimation.settings import DEFAULT, NoiseSettings, PeriodSettings
 from jbf.records.motion.rests import certain_rests
 from jbf.records.motion.roughness import noise_of
 
 Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
@@ -43,7 +42,7 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     repeated = _pooled(repeats, settings)
     if repeated is not None and settings.min_floor_ratio * repeated < floor:
         floor = repeated
-    total = _pooled([*repeats, *_squares_at_rest(prepared, settings)], settings)
+    total = _pooled([*repeats, *_rest_squares(prepared, settings)], settings)
     if total is None:
         return floor
     low, high = settings.min_floor_ratio * floor, settings.max_floor_ratio * floor
@@ -53,7 +52,7 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
 def noise_upper_bound(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Upper limit of the noise including its coloured part, N; None if it cannot be estimated."""
     settings = samples.settings.noise
-    squares = [*_repeat_squares(prepared, samples), *_squares_at_rest(prepared, settings)]
+    squares = [*_repeat_squares(prepared, samples), *_rest_squares(prepared, settings)]
     total = _pooled(squares, settings)
     return None if total is None else max(total, _white(prepared, samples))
 
@@ -90,38 +89,23 @@ def _pooled(squares: Sequence[tuple[float, int]], settings: NoiseSettings) -> fl
     return float(np.sqrt(sum(square * count for square, count in squares) / weight))
 
 
-def _repeat_squares(prepared: Sequence[Prepared], samples: Samples) -> list[tuple[float, int]]:
-    """Noise variance from repeated periods, N^2, and the number of samples, for each run."""
-    return [
-        _repeat_square(p, counted, samples.settings)
-        for p, counted in zip(prepared, samples.counted, strict=True)
-    ]
+def _rest_squares(prepared: Sequence[Prepared], settings: NoiseSettings) -> list[tuple[float, int]]:
+    """Noise variance, N^2, about a straight line in each long rest, and the number of samples.
 
-
-def _squares_at_rest(
-    prepared: Sequence[Prepared], settings: NoiseSettings
-) -> list[tuple[float, int]]:
-    """Noise variance, N^2, and the number of samples, of each rest in all runs."""
-    return [
-        square for p in prepared for square in _rest_squares(p.motion.resting, p.friction, settings)
-    ]
-
-
-def _rest_squares(resting: Mask, values: Array, settings: NoiseSettings) -> list[tuple[float, int]]:
-    """Variance of values about a straight line in each long rest, and the number of samples.
-
-    The last samples may belong to a motion that the encoder does not yet show.
+    The last samples of a rest may belong to a motion that the encoder does not yet show.
     """
-    certain = certain_rests(resting)
-    edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     squares = []
-    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        # The beginning of a rest may still be a transient.
-        begin = first + (end - first) // 4
-        within = values[begin:end][certain[begin:end]]
-        if len(within) >= settings.min_rest_samples:
-            part = _detrended(within)
-            squares.append((float(part @ part) / (len(part) - 2), len(part)))
+    for p in prepared:
+        resting = p.motion.resting
+        certain = certain_rests(resting)
+        edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
+        for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+            # The beginning of a rest may still be a transient.
+            begin = first + (end - first) // 4
+            within = p.friction[begin:end][certain[begin:end]]
+            if len(within) >= settings.min_rest_samples:
+                part = _detrended(within)
+                squares.append((float(part @ part) / (len(part) - 2), len(part)))
     return squares
 
 
@@ -132,23 +116,27 @@ def _detrended(values: Array) -> Array:
     return np.asarray(centred - place * float(place @ centred) / float(place @ place))
 
 
-def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tuple[float, int]:
-    """Noise variance of one run, N^2, from the same motion one period later; samples used."""
-    shift = period_samples(prepared.motion.velocity, settings.periods)
-    if shift is None:
-        return 0.0, 0
-    # The first period still contains the initial-state transient of the film.
-    (values, dither_square), begin = _dithered(prepared), shift // 2
-    gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
-    gap = gap[counted[begin + shift :] & counted[begin:-shift]]
-    if len(gap) < settings.noise.min_repeated_samples:
-        return 0.0, 0
-    # Slow drifts between periods are not noise and are removed. The median tolerates outliers in
-    # half of the samples, such as reversals that are not aligned.
-    size = max(len(gap) // 12, 25)
-    blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
-    spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]
-    return max(float(np.median(spread) ** 2) - dither_square, dither_square), len(gap)
+def _repeat_squares(prepared: Sequence[Prepared], samples: Samples) -> list[tuple[float, int]]:
+    """Noise variance of each run, N^2, from its motion one period later; samples used."""
+    squares, settings = [], samples.settings
+    for p, counted in zip(prepared, samples.counted, strict=True):
+        shift = period_samples(p.motion.velocity, settings.periods)
+        if shift is None:
+            continue
+        # The first period still contains the initial-state transient of the film.
+        (values, dither_square), begin = _dithered(p), shift // 2
+        gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
+        gap = gap[counted[begin + shift :] & counted[begin:-shift]]
+        if len(gap) < settings.noise.min_repeated_samples:
+            continue
+        # Slow drifts between periods are not noise and are removed. The median tolerates outliers
+        # in half of the samples, such as reversals that are not aligned.
+        size = max(len(gap) // 12, 25)
+        blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
+        spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]
+        square = max(float(np.median(spread) ** 2) - dither_square, dither_square)
+        squares.append((square, len(gap)))
+    return squares
 
 
 def period_samples(velocity: Array, settings: PeriodSettings = DEFAULT.periods) -> int | None:

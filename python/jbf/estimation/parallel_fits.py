@@ -50,10 +50,4 @@ def in_parallel(work: Callable[[T], R], items: Sequence[T], at_once: int) -> Ite
         yield from map(work, items)
         return
     with ThreadPoolExecutor(at_once) as threads:
-        futures = [threads.submit(work, item) for item in items]
-        try:
-            for future in futures:
-                yield future.result()
-        finally:
-            for future in futures:
-                future.cancel()
+        yield from threads.map(work, items)

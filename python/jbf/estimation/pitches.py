@@ -174,7 +174,7 @@ def _regress(campaign: Campaign) -> _Regression:
     # run (Frisch & Waugh 1933). A triangular factor replaces the rows of each run.
     factors, scales = [], []
     for p, m in pairs:
-        regressors = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
+        regressors = _regressors(p, m, knots)
         scales.append(np.sum(regressors**2, axis=0))
         rows = _centred_by_direction(
             np.column_stack([regressors, p.friction[m]]), p.motion.velocity[m]
@@ -185,16 +185,17 @@ def _regress(campaign: Campaign) -> _Regression:
     solution, *_ = np.linalg.lstsq(factor[:, :-1] / scale, factor[:, -1], rcond=1e-9)
     rest = []
     for p, m in pairs:
-        regressors = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
+        regressors = _regressors(p, m, knots)
         remaining = p.friction[m] - (regressors / scale) @ solution
         rest.append(_centred_by_direction(remaining[:, None], p.motion.velocity[m])[:, 0])
     return _Regression(place, np.concatenate(rest), speed, float(solution[0] / scale[0]))
 
 
-def _regressors(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
+def _regressors(p: Prepared, moving: Mask, knots: Knots) -> Array:
     """Regressors of the force of a run on speed, acceleration and angle, shape (n, k)."""
-    slope = p.motion.acceleration[moving]
-    return np.stack([slope, np.cos(angle), np.sin(angle), *_hat_functions(speed, knots)], axis=1)
+    angle, motion = p.motion.angle_rad[moving], p.motion
+    hats = _hat_functions(motion.velocity[moving], knots)
+    return np.stack([motion.acceleration[moving], np.cos(angle), np.sin(angle), *hats], axis=1)
 
 
 def _centred_by_direction(rows: Array, speed: Array) -> Array:

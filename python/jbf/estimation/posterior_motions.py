@@ -120,7 +120,7 @@ def _jumps_at_reversals(
         Derivatives of the predicted force with respect to position, velocity and acceleration,
         shape (n, 3).
     """
-    sliding = np.flatnonzero(p.slides)
+    sliding = np.flatnonzero(p.motion.slides)
     v, time_s = p.motion.velocity[sliding], p.run.time_s[sliding]
     rest_between = np.diff(np.cumsum(p.motion.resting)[sliding]) > 0
     sensitivity = 0.5 * (rows[sliding][1:] + rows[sliding][:-1])
@@ -220,13 +220,9 @@ def moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
         assert errors is not None
         step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))
         step = np.where(motion.resting, 0.0, step)
-        if axis == 0:
-            changed = replace(motion, angle_rad=motion.angle_rad + step / errors.arm_m)
-        elif axis == 1:
-            changed = replace(motion, velocity=motion.velocity + step)
-        else:
-            changed = replace(motion, acceleration=motion.acceleration + step)
-        return changed, step
+        name = ("angle_rad", "velocity", "acceleration")[axis]
+        change = step / errors.arm_m if axis == 0 else step
+        return replace(motion, **{name: getattr(motion, name) + change}), step
 
     recorded = prepared.recorded
     if recorded is not None:

@@ -39,15 +39,6 @@ FINER = 1.5
 """Ratio of the sampling rates of motion and force above which all motion samples are used."""
 
 
-def slides(motion: EstimatedMotion) -> Mask:
-    """Mask of the samples at which the direction of sliding is known, shape (n,).
-
-    At rest, friction balances the force of the drive up to the breakaway level in either direction.
-    The residual is therefore undefined at rest. It is also undefined near a reversal.
-    """
-    return np.asarray(motion.sign_known & ~motion.resting)
-
-
 class NoMotion(InputError):
     """Error for a run without motion, or without a known direction of motion."""
 
@@ -207,11 +198,6 @@ class Prepared:
         return cls(rig, run, motion, run.friction, step_s, examined, recorded)
 
     @property
-    def slides(self) -> Mask:
-        """Mask of the samples with a known direction of sliding (:func:`slides`), shape (n,)."""
-        return slides(self.motion)
-
-    @property
     def readings_n(self) -> Array:
         """Force readings of the run as recorded, N."""
         assert self.run.friction is not None
@@ -303,7 +289,7 @@ def _of_readings(run: Run, motion: EstimatedMotion, examined: Examined) -> list[
     wrong_sign = find_wrong_sign(run, motion, examined.usable)
     if any(f.kind == "steps" for f in examined.findings):
         return [*wrong_sign]  # quantisation steps count as noise
-    return [*wrong_sign, *find_smooth_force(run, slides(motion) & examined.usable)]
+    return [*wrong_sign, *find_smooth_force(run, motion.slides & examined.usable)]
 
 
 def _derived(run: Run, moved: float) -> Finding:

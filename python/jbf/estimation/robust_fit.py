@@ -17,7 +17,7 @@ from jbf.estimation.held_out import held_out_by_run
 from jbf.estimation.minimum import MAX_EVALUATIONS
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import search
+from jbf.estimation.search import search_solution
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -65,9 +65,9 @@ def _better(robust_errors: Array, errors: Array) -> bool:
     return rms < BETTER or (rms < NO_WORSE and median < SHARPER)
 
 
-def huber(residual: Array) -> Array:
+def huber(residual: Array, tuning: float = TUNING) -> Array:
     """Square roots of the Huber weights of absolute residuals given in standard deviations."""
-    return np.asarray(np.sqrt(np.minimum(1.0, TUNING / np.maximum(residual, 1e-300))))
+    return np.asarray(np.sqrt(np.minimum(1.0, tuning / np.maximum(residual, 1e-300))))
 
 
 def student(residual: Array) -> Array:
@@ -89,7 +89,5 @@ def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]
         factors = [weights(np.abs(r) / scale) for r in solution.residuals]
         weight = tuple(w * f for w, f in zip(start.samples.weight, factors, strict=True))
         samples = replace(start.samples, weight=weight)
-        end = search(problem, samples, solution.values, WHITE, MAX_EVALUATIONS)
-        values = problem.wrapped(end.values)
-        solution = problem.solution(values, samples, WHITE, end.converged, end.message)
+        solution = search_solution(problem, samples, solution.values, WHITE, MAX_EVALUATIONS)
     return solution

@@ -69,7 +69,7 @@ class Samples:
     def of(cls, prepared: Iterable[Prepared], settings: Settings = DEFAULT) -> Samples:
         """Select the samples with a known direction of sliding and a usable reading."""
         prepared = tuple(prepared)
-        counted = tuple(p.slides & p.examined.usable for p in prepared)
+        counted = tuple(p.motion.slides & p.examined.usable for p in prepared)
         return cls(
             tuple(p.run.name for p in prepared),
             tuple(p.step_s for p in prepared),
@@ -106,27 +106,17 @@ class Samples:
             weight=tuple(w * m for w, m in zip(self.weight, masks, strict=True)),
         )
 
-    def with_factors(
-        self,
-        level: Sequence[Array],
-        robust: Sequence[Array],
-        between: RandomEffects | None,
-    ) -> Samples:
-        """Return a copy with the weights multiplied by factors, and with other random effects.
+    def with_factors(self, factors: Sequence[Array], *, of_level: bool) -> Samples:
+        """Return a copy with the weights multiplied by factors, one (n,) array per run.
 
-        Parameters
-        ----------
-        level
-            Factor for the noise level of each sample, one array per run.
-        robust
-            Factor for heavy-tailed noise, one array per run.
-        between
-            Random effects of the runs.
+        With `of_level`, they describe the noise level of each sample, otherwise heavy-tailed noise.
         """
-        weight = tuple(w * s * h for w, s, h in zip(self.weight, level, robust, strict=True))
-        before = [np.ones(len(w)) for w in weight] if self.level is None else self.level
-        levels = tuple(a * b for a, b in zip(before, level, strict=True))
-        return replace(self, weight=weight, between=between, level=levels)
+        weight = tuple(w * f for w, f in zip(self.weight, factors, strict=True))
+        if not of_level:
+            return replace(self, weight=weight)
+        before = self.level or [np.ones(len(w)) for w in weight]
+        level = tuple(a * b for a, b in zip(before, factors, strict=True))
+        return replace(self, weight=weight, level=level)
 
     def with_known_motion(self) -> Samples:
         """Restrict to samples where the motion's errors have at most the variance of the noise."""

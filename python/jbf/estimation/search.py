@@ -9,15 +9,16 @@ has several maxima.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.levenberg_marquardt import minimise
+from jbf.estimation.levenberg_marquardt import SearchResult, minimise
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 NEAR = 0.3
@@ -111,15 +112,6 @@ class Visited:
         return problem.square(values, samples)
 
 
-@dataclass(frozen=True)
-class SearchResult:
-    """Result of a search: parameter values, whether it converged, and why it ended."""
-
-    values: Array
-    converged: bool
-    message: str
-
-
 class _Joined(Exception):
     """Signal that a search has reached a point that another search has visited."""
 
@@ -174,13 +166,26 @@ def search(
     tolerance = max(ENDED, least_gain / max(samples.count, 1))
     try:
         end = minimise(evaluate, problem.encode(start), bounds, longest, evaluations, tolerance)
-        found = SearchResult(problem.decode(end.x, start), end.converged, end.message)
+        end = replace(end, values=problem.decode(end.values, start))
     except _Joined:
         least = min(path, key=lambda point: point.square)
         return SearchResult(least.values, False, "joined another search")
     if visited is not None:
         memory.ended.append(path)
-    return found
+    return end
+
+
+def search_solution(
+    problem: Problem,
+    samples: Samples,
+    start: Array,
+    noise: Noise,
+    evaluations: int,
+    least_gain: float = 0.0,
+) -> Solution:
+    """Return the solution at the end of a search from one starting point (`search`)."""
+    end = search(problem, samples, start, noise, evaluations, least_gain=least_gain)
+    return problem.solution(problem.wrapped(end.values), samples, noise, end.converged, end.message)
 
 
 def _key(values: Array) -> bytes:

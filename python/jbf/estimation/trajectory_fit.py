@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import optimize
 
 from jbf.errors import InputError
 from jbf.estimation.estimates import Estimates
@@ -25,9 +26,6 @@ from jbf.records.arguments import by_name, described, numbers
 from jbf.records.rig import Rig
 from jbf.records.toml_file import number
 from jbf.threads import one_blas_thread
-
-if TYPE_CHECKING:
-    from scipy.optimize import OptimizeResult
 
 Array = npt.NDArray[np.float64]
 REST_SHARE = 1e-9
@@ -138,8 +136,6 @@ def fit_trajectories(
     >>> round(fit.params["f_m"], 4)
     0.25
     """
-    from scipy import optimize  # import time of nearly one second
-
     pages = parameters_of("journal", ())
     given = {
         find_parameter(name, pages): number(value, f"start.{name}")
@@ -230,7 +226,7 @@ def _parameter(page: Parameter, value: float, error: float, *, sensitive: bool) 
     return ParameterValue(value, None if note else error, note, note is not None)
 
 
-def _errors(optimum: OptimizeResult, values: Array) -> Array:
+def _errors(optimum: optimize.OptimizeResult, values: Array) -> Array:
     """Standard errors of the parameters; NaN if they are not separately identifiable."""
     jacobian = np.asarray(optimum.jac)
     size = np.linalg.norm(jacobian, axis=0)

@@ -180,21 +180,14 @@ def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Arr
 
 def _state(law: str, effects: Iterable[str]) -> str:
     """Text that names the state of a law and its effects that is unknown at the start of a run."""
-    page = find_law(law)
-    cell = has_unknown_start(effects)
-    if page.has_film:
-        return (
-            "film or the load cell's hysteresis was not at its initial state"
-            if cell
-            else "film was not at its initial state"
-        )
-    if page.has_bristle:
+    page, cell = find_law(law), "load cell's hysteresis"
+    if page.has_bristle and not page.has_film:
         return "contact was deflected differently"
-    return (
-        "contact was not at its initial state"
-        if page.has_memory
-        else "load cell's hysteresis was not at its initial state"
-    )
+    if page.has_film:
+        state = f"film or the {cell}" if has_unknown_start(effects) else "film"
+    else:
+        state = "contact" if page.has_memory else cell
+    return f"{state} was not at its initial state"
 
 
 def _findings(

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.prepared import slides
 from jbf.export.ledger import RunLoss
 from jbf.models.catalogue import CARRIER, find_effect
 from jbf.models.chain import chain, core_refusals, estimated_motion
@@ -113,7 +112,7 @@ class Reference:
         motions = [driven_motion(rig, run, e) for run, e in zip(runs, estimated, strict=True)]
         body = force_of_effects(model, BODY, motions)
         force = [f - b for f, b in zip(predict(machine, motions), body, strict=True)]
-        sliding = [slides(motion) for motion in estimated]
+        sliding = [motion.slides for motion in estimated]
         if not any(np.any(mask) for mask in sliding):
             raise InputError(
                 problem="the runs contain no sliding, so that the loss of the export is unknown",

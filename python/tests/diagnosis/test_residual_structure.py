@@ -119,7 +119,7 @@ def test_burst_is_detected_even_if_robust_weights_reduce_it() -> None:
     inside = np.abs(TIME_S - 11.0) < 0.1
     residuals[0] = residuals[0] + 9.0 * inside
     robust = [np.where(inside, 0.05, 1.0), np.ones(N)]
-    samples = sines().samples.with_factors([np.ones(N)] * 2, robust, None)
+    samples = sines().samples.with_factors(robust, of_level=False)
     found = find_residual_structure(*solution_with(sines(), residuals, samples=samples))
     assert "time" in {r.axis for r in found}
 

@@ -35,9 +35,9 @@ def test_linear_problem_within_bounds_has_the_minimum_of_quadratic_programming(s
     end = minimise(function, np.zeros(4), box, np.full(4, np.inf), 30, 1e-10)
     wanted = optimize.lsq_linear(design, data, box, tol=1e-12).x
     assert end.converged
-    least, reached = (float(np.sum((data - design @ x) ** 2)) for x in (wanted, end.x))
+    least, reached = (float(np.sum((data - design @ x) ** 2)) for x in (wanted, end.values))
     assert least <= reached * (1.0 + 1e-9) <= least * (1.0 + 1e-7)
-    np.testing.assert_allclose(end.x, wanted, atol=1e-3)
+    np.testing.assert_allclose(end.values, wanted, atol=1e-3)
 
 
 def test_variable_at_its_bound_does_not_shorten_the_step_of_the_others() -> None:
@@ -53,7 +53,7 @@ def test_variable_at_its_bound_does_not_shorten_the_step_of_the_others() -> None
     end = minimise(function, np.array([0.999, 0.0]), box, np.full(2, np.inf), 10, 1e-6)
     assert end.converged
     np.testing.assert_allclose(evaluated[1], [1.0, 5.0], rtol=2e-3)
-    np.testing.assert_allclose(end.x, [1.0, 5.0], rtol=1e-3)
+    np.testing.assert_allclose(end.values, [1.0, 5.0], rtol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_minimum_of_rosenbrocks_function_within_bounds(
     start = np.array([-1.2, 1.0])
     end = minimise(rosenbrock, start, box, np.full(2, np.inf), 100, 1e-12)
     assert end.converged
-    np.testing.assert_allclose(end.x, wanted, atol=1e-4)
+    np.testing.assert_allclose(end.values, wanted, atol=1e-4)
 
 
 MISRA1A = """
@@ -87,8 +87,8 @@ def test_certified_values_of_the_nist_data_set_misra1a(start: tuple[float, float
     box = bounds([0.0, 0.0], [1e6, 1.0])
     end = minimise(function, np.array(start), box, np.full(2, np.inf), 60, 1e-12)
     assert end.converged
-    np.testing.assert_allclose(end.x, [2.3894212918e2, 5.5015643181e-4], rtol=1e-5)
-    residual = function(end.x)[0]
+    np.testing.assert_allclose(end.values, [2.3894212918e2, 5.5015643181e-4], rtol=1e-5)
+    residual = function(end.values)[0]
     assert residual @ residual == pytest.approx(1.2455138894e-1, rel=1e-7)
 
 
@@ -109,7 +109,7 @@ def test_step_is_limited_and_values_that_diverge_are_rejected() -> None:
 
     end = minimise(function, np.zeros(1), bounds([-9.0], [9.0]), np.array([3.0]), 40, 1e-9)
     assert max(np.abs(np.diff(visited[:2]))) == pytest.approx(3.0)
-    assert end.x[0] == pytest.approx(2.0, abs=1e-3)
+    assert end.values[0] == pytest.approx(2.0, abs=1e-3)
 
 
 @pytest.mark.parametrize(("share", "evaluations"), [(0.1, 1), (100.0, 3)])
@@ -133,6 +133,6 @@ def test_search_ends_if_the_predicted_decrease_is_below_the_tolerance(
     end = minimise(evaluate, start, box, np.full(4, np.inf), 30, tolerance)
     assert end.converged
     assert len(counted) <= evaluations
-    reached = float(np.sum(function(end.x)[0] ** 2))
+    reached = float(np.sum(function(end.values)[0] ** 2))
     assert reached <= least * (1.0 + tolerance)
     assert (len(counted) == 1) == (share < 1.0)

@@ -69,12 +69,12 @@ def test_selection_of_runs_keeps_all_properties_of_their_samples() -> None:
 
 def test_further_weights_are_multiplied_and_the_noise_level_is_accumulated() -> None:
     level, robust = [np.full(4, 0.5), np.full(3, 0.8)], [np.full(4, 0.1), np.ones(3)]
-    once = SAMPLES.with_factors(level, robust, None)
+    once = SAMPLES.with_factors(level, of_level=True).with_factors(robust, of_level=False)
     np.testing.assert_allclose(once.weight[0], [0.05, 0.025, 0.0, 0.05])
     np.testing.assert_allclose(once.weight[1], [0.8, 0.2, 0.8])
     # Robust weights do not change the noise level.
     assert lists(once.level) == [[0.5] * 4, [0.8] * 3]
-    twice = once.with_factors(level, robust, None)
+    twice = once.with_factors(level, of_level=True).with_factors(robust, of_level=False)
     np.testing.assert_allclose(twice.level[1], 0.64)
     np.testing.assert_allclose(twice.weight[0][0], 0.0025)
 

@@ -126,8 +126,9 @@ class Limits:
             load = min(middles), max(middles)
         celsius = self.temperature_c
         least_k = campaign.settings.conditions.min_temperature_difference_k
-        if celsius is None and (campaign.temperatures_k or 0.0) >= least_k:
-            celsius = campaign.temperature_range_c
+        recorded_c = campaign.temperature_range_c
+        if celsius is None and recorded_c is not None and recorded_c[1] - recorded_c[0] >= least_k:
+            celsius = recorded_c
         travel = self.travel or campaign.travel
         return Limits(top, acceleration, self.duration_s, load, celsius, travel)
 

@@ -62,7 +62,7 @@ def _weighted(
     if estimate is None:
         return None
     levels, finding = estimate
-    again, after = _reweighted(model, levels, [np.ones(len(w)) for w in levels], finding)
+    again, after = _reweighted(model, levels, finding, of_level=True)
     before = campaign.samples.within(solution.samples.counted)
     # The likelihood of a sample has the factor 1 / (standard deviation).
     fitted = [w > 0.0 for w in after.samples.weight]
@@ -73,11 +73,11 @@ def _weighted(
 
 
 def _reweighted(
-    model: Model, levels: Weights, robust: Weights, finding: Finding
+    model: Model, factors: Weights, finding: Finding, *, of_level: bool
 ) -> tuple[Campaign, Solution]:
-    """Campaign with factors for the noise level and the heavy tails, and the model refitted."""
+    """Campaign with factors for the noise level or the heavy tails, and the model refitted."""
     campaign, solution = model.campaign, model.solution
-    samples = campaign.samples.with_factors(levels, robust, campaign.samples.between)
+    samples = campaign.samples.with_factors(factors, of_level=of_level)
     after = refitted(model.problem, solution, samples.within(solution.samples.counted))
     return replace(campaign, samples=samples).with_findings([finding]), after
 
@@ -96,7 +96,7 @@ def heavy_tails(model: Model) -> Proposal | None:
     if estimate is None:
         return None
     weights, finding, gain = estimate
-    again, after = _reweighted(model, [np.ones(len(w)) for w in weights], weights, finding)
+    again, after = _reweighted(model, weights, finding, of_level=False)
     gain *= effective_share(solution)
     return Proposal(again, model.problem, after, gain, price_of_term(policy))
 

@@ -144,6 +144,15 @@ class EstimatedMotion:
     clock_s: Array | None = None
 
     @property
+    def slides(self) -> Mask:
+        """Mask of the samples at which the direction of sliding is known, shape (n,).
+
+        At rest, friction balances the force of the drive up to the breakaway level in either
+        direction. The residual is therefore undefined there, and near a reversal.
+        """
+        return np.asarray(self.sign_known & ~self.resting)
+
+    @property
     def aside(self) -> set[str]:
         """Names of the columns that were discarded as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}

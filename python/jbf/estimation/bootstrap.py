@@ -291,12 +291,8 @@ def simulated_runs(
 ) -> list[Run]:
     """Simulate new recordings of runs with a fitted model, or with some of its effects only.
 
-    Parameters
-    ----------
-    hidden
-        Effects of the model that the simulated friction contains.
-    draw
-        Number of the simulation, used as the seed.
+    The friction contains the effects `hidden` of the model. The number `draw` of the simulation is
+    the seed.
     """
     campaign = Campaign.prepare(model.rig, runs)
     problem = Problem(campaign, model.law, model.clock, model.effects)

@@ -93,12 +93,8 @@ def fits_on_clocks(
 ) -> list[DelayedFit]:
     """Fit with the force on each clock, or with a significant delay common to all runs instead.
 
-    The delay is used if it is significant, and likelier (`likeliest`) at the samples of both.
-
-    Parameters
-    ----------
-    clocks_s
-        Delay of each possible clock of the force, s.
+    `clocks_s` has the delay of each possible clock of the force. The common delay is used if it is
+    significant, and likelier (`likeliest`) at the samples of both.
     """
     at_once = fits_at_once(first.campaign, first.law, first.effects)
     fits = list(in_parallel(lambda c: fit_with_delay(first, solution, c), clocks_s, at_once))
@@ -186,24 +182,15 @@ def _shortest_step_s(problem: Problem) -> float:
 
 
 def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
-    """Solve for the delay that is its own generalised least-squares estimate.
+    """Delay that is its own generalised least-squares estimate, and its standard error, s.
 
     The covariance of the residual depends on the delay. The whitened sum of squares, with the
     covariance of this delay held fixed, is stationary at the result. The maximum of the likelihood
     is less accurate: the covariance, and with it the likelihood, is discontinuous where a sample
     crosses a corner of the motion.
 
-    Parameters
-    ----------
-    start
-        Fit with the delay at which the search begins. The root is at most two sampling intervals
-        from it.
-
-    Returns
-    -------
-    tuple[float, float]
-        Delay and its standard error, s. The standard error is infinite if the derivative has no
-        root near the start.
+    The search begins at the delay of the fit `start`. The standard error is infinite if the
+    derivative has no root within two sampling intervals from it.
     """
     step_s = _shortest_step_s(start.first)
     span_s = DELAY_SPAN * step_s
@@ -261,14 +248,9 @@ def fit_with_delay(
     delayed: bool = False,
     rounds: int = ROUNDS,
 ) -> DelayedFit:
-    """Iterate the fit with a delay `delay_s` of the force.
+    """Iterate the fit with a delay `delay_s` of the force, at most `rounds` times.
 
-    Parameters
-    ----------
-    delayed
-        Whether the delay was estimated, and is uncertain.
-    rounds
-        Largest number of iterations.
+    `delayed` states whether the delay was estimated, and is uncertain.
     """
     settings = first.campaign.settings.motion
     problem = shifted(first, delay_s) if delay_s != 0.0 else first

@@ -75,10 +75,7 @@ class DelayStep:
     def differences_p_value(self, applied_s: Array) -> float:
         """p-value of the differences between the total delays of the runs.
 
-        Parameters
-        ----------
-        applied_s
-            Delays of the runs applied before this step, s, shape (m,).
+        `applied_s` has the delays of the runs applied before this step, s, shape (m,).
         """
         count = int(np.sum(self.identifiable))
         if count < 2:
@@ -137,10 +134,7 @@ def run_delay_step(problem: Problem, solution: Solution) -> DelayStep:
 def drift_step(problem: Problem, solution: Solution, with_delay: bool = False) -> DriftStep:
     """Gauss-Newton step in the drift of a clock that starts with each run, and all parameters.
 
-    Parameters
-    ----------
-    with_delay
-        Whether all runs may additionally have a common delay of the instrument.
+    With `with_delay`, all runs may additionally have a common delay of the instrument.
     """
     clocks: Clocks = "drift and delay" if with_delay and TAU not in problem.names else "drift"
     step, covariance = _step(problem, solution, range(len(problem.open)), clocks)

@@ -130,18 +130,9 @@ class Whitening:
     ) -> tuple[Array, Array]:
         """Whitened residuals of standard deviation `noise` and their Jacobian, of all runs.
 
-        Parameters
-        ----------
-        residuals, jacobian
-            Residuals (n,) and their derivatives (n, k), one array per run, in the unit of the
-            force.
-        selection
-            Indices of the runs to use; None for all runs.
-
-        Returns
-        -------
-        tuple
-            Residuals (m,) and Jacobian (m, k) of the samples with a weight, all runs in one array.
+        The arguments are residuals (n,) and their derivatives (n, k), one array per run, in the
+        unit of the force, and optionally the indices of the runs to use. The result has the
+        residuals (m,) and the Jacobian (m, k) of the samples with a weight, all runs in one array.
         """
         runs = list(range(len(residuals)) if selection is None else selection)
         columns = []

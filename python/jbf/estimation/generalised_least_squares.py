@@ -124,12 +124,7 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
     the friction divided by the mass. The force of a hand may jump instead. The motions with and
     without these jumps are both fitted. The likeliest of these fits and `end` is returned
-    (`likeliest`).
-
-    Parameters
-    ----------
-    first
-        Problem before the correction of a delay.
+    (`likeliest`). `first` is the problem before the correction of a delay.
     """
     motion = end.solution.samples.motion
     least = first.campaign.settings.motion.min_share

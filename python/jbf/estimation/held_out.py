@@ -154,12 +154,9 @@ def held_out_halves(
 ) -> list[HeldOutPart]:
     """Hold out two halves of one run in turn; each fit uses the other half and all other runs.
 
-    Parameters
-    ----------
-    alternate
-        Whether the halves consist of alternate parts (`alternate_parts`), with the same kinds of
-        motion. Otherwise they are the first and second half, which show whether the run is
-        homogeneous.
+    With `alternate`, the halves consist of alternate parts (`alternate_parts`), with the same kinds
+    of motion. Otherwise they are the first and second half, which show whether the run is
+    homogeneous.
     """
     samples, squares = solution.samples, _squares(solution)
     complete = [np.ones(len(c), dtype=bool) for c in samples.counted]
@@ -189,11 +186,8 @@ def _squares(solution: Solution) -> Array:
 def _identified(solution: Solution, squares: Array, rest: Array) -> Mask:
     """Mask of the parameters that the remaining runs identify, shape (k,).
 
-    Parameters
-    ----------
-    squares, rest
-        Sums of squares of the derivatives for all runs, and for the remaining ones,
-        shape (runs, k).
+    `squares` and `rest` are the sums of squares of the derivatives for all runs, and for the
+    remaining ones, shape (runs, k).
     """
     least = solution.samples.settings.held_out.min_information
     unidentified: Mask = rest.sum(axis=0) < least * squares.sum(axis=0)

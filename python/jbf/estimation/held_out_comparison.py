@@ -51,16 +51,9 @@ def predictive_deviance(
 ) -> float:
     """Minus twice the log predictive density of all held-out parts, up to a common constant.
 
-    Parameters
-    ----------
-    solution
-        Solution whose derivatives are used.
-    parts
-        Held-out parts of fits near the solution; each sample is in one of them.
-    samples, noise
-        Weights of the samples, and the noise model for whitening, common to all compared models.
-    variance
-        Variance of the innovations, N^2.
+    The parts are held out of fits near the solution, whose derivatives are used; each sample is in
+    one of them. The weights of the samples, the noise model for whitening, and the variance of the
+    innovations, N^2, are common to all compared models.
     """
     moments = []
     for part in parts:
@@ -112,12 +105,8 @@ def independent_units(
 ) -> Units:
     """Divide samples into independent units: runs, or strokes if there are few runs.
 
-    Parameters
-    ----------
-    counted
-        Included samples by the index of the run.
-    prepared
-        All runs; without them, the runs are the units.
+    `counted` has the included samples by the index of the run, and `prepared` all runs. Without the
+    latter, the runs are the units.
     """
     runs = {i: mask for i, mask in counted.items() if mask.any()}
     if len(runs) >= settings.min_units or not prepared:

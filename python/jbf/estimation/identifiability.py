@@ -47,14 +47,9 @@ def reason_not_identifiable(
 ) -> str | None:
     """Reason why a fitted parameter is not identifiable; None if it is identifiable.
 
-    Parameters
-    ----------
-    value, error
-        Value and standard error in the parameter's unit; the error is nan if it is unknown.
-    sensitive
-        Whether the predictions for the runs depend on the parameter.
-    separate
-        Whether the parameter can be distinguished from all other parameters.
+    The value and its standard error are in the parameter's unit; the error is nan if it is unknown.
+    `sensitive` states whether the predictions for the runs depend on the parameter, and `separate`
+    whether it can be distinguished from all other parameters.
     """
     if not sensitive:
         return NEVER_MOVED
@@ -89,14 +84,9 @@ def idle_effects(
 ) -> tuple[str, ...]:
     """Effects whose fitted parameters have their null values, so that they have no influence.
 
-    Parameters
-    ----------
-    pages, values
-        Catalogue entries by full parameter name, and values in the same order.
-    errors
-        Standard errors by full name, where they are known.
-    fixed
-        Names of parameters that were not fitted.
+    `pages` has the catalogue entries by full parameter name, and `values` is in the same order. The
+    standard errors, where they are known, are by full name. `fixed` has the names of parameters
+    that were not fitted.
     """
     errors, named = errors or {}, list(zip(pages.items(), values, strict=True))
 
@@ -150,10 +140,7 @@ def reset_unidentified(
 ) -> Reset:
     """Set effects without influence to their null, and unidentifiable parameters to neutral values.
 
-    Parameters
-    ----------
-    start
-        The user's starting values by full name; by default those of the catalogue.
+    `start` has the user's starting values by full name; the others are those of the catalogue.
     """
     values = solution.values
     notes: dict[str, str] = {}

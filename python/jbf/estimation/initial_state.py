@@ -74,12 +74,8 @@ def transient_masks(
 ) -> list[Mask]:
     """Mask of the samples that depend on the initial state of their run, one mask per run.
 
-    Parameters
-    ----------
-    values
-        Parameter values of an approximate fit.
-    noise_rms
-        Noise on the friction, N.
+    The parameter values are those of an approximate fit; `noise_rms` is the noise on the friction,
+    N.
     """
     # The motion used by the fit has starts between samples and would differ at each stop.
     predictions = []

@@ -50,10 +50,7 @@ _regressions: WeakKeyDictionary[Campaign, _Regression] = WeakKeyDictionary()
 def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
     """Most likely pitches of a campaign, m, the most likely first; empty for a short travel.
 
-    Parameters
-    ----------
-    along
-        Whether the force in the direction of motion is used instead of the force itself.
+    With `along`, the force in the direction of motion is used instead of the force itself.
     """
     campaign = campaign.first or campaign
     by_direction = _pitches_of.setdefault(campaign, {})

@@ -108,17 +108,10 @@ def _jumps_at_reversals(
     friction is the difference of the predicted forces minus sensitivity times change of the motion.
     At a stop, or if the drive sticks at a reversal, the acceleration jumps to zero.
 
-    Parameters
-    ----------
-    mean
-        Position and its derivatives at the samples, shape (n, N).
-    speed_sd
-        Standard error of the speed, shape (n,).
-    residual
-        Force minus predicted force, N, shape (n,).
-    rows
-        Derivatives of the predicted force with respect to position, velocity and acceleration,
-        shape (n, 3).
+    `mean` has the position and its derivatives at the samples, shape (n, N), and `speed_sd` the
+    standard error of the speed, shape (n,). `residual` is the force minus the predicted force, N,
+    shape (n,). `rows` are the derivatives of the predicted force with respect to position, velocity
+    and acceleration, shape (n, 3).
     """
     sliding = np.flatnonzero(p.motion.slides)
     v, time_s = p.motion.velocity[sliding], p.run.time_s[sliding]
@@ -181,13 +174,9 @@ def shifted(first: Problem, delay_s: float) -> Problem:
 def corrected_for_delay(before: Campaign, delay_s: float, margin_s: float = 0.0) -> Campaign:
     """Correct a delay of the force: shift the force of each run to earlier times by `delay_s`.
 
-    The finding states the total delay, including one that has already been corrected.
-
-    Parameters
-    ----------
-    margin_s
-        Readings within this time of the start or the end of a motion are dropped before the shift.
-        All delays up to this size then have the same readings.
+    The finding states the total delay, including one that has already been corrected. Readings
+    within `margin_s` of the start or the end of a motion are dropped before the shift. All delays
+    up to this size then have the same readings.
     """
     prepared = before.prepared
     if margin_s > 0.0:

@@ -211,14 +211,8 @@ class Prepared:
     def shifted(self, delay_s: float, drift: float, margin_s: float = 0.0) -> Prepared:
         """Return the run with its force shifted to earlier times.
 
-        Parameters
-        ----------
-        delay_s
-            Delay of the force in the middle of the run, s.
-        drift
-            Increase of the delay per second.
-        margin_s
-            Readings closer than this to the start or the end of the motion are dropped, s.
+        `delay_s` is the delay of the force in the middle of the run, and `drift` its increase per
+        second. Readings closer than `margin_s` to the start or the end of the motion are dropped.
         """
         instants, motion = self.motion_as_read
         time = self.run.time_s

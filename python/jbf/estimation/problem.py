@@ -239,12 +239,8 @@ class Problem:
     def transient_samples(self, values: Array, noise_rms: float) -> list[Mask]:
         """Mask of the samples that depend on the initial state of their run, one mask per run.
 
-        Parameters
-        ----------
-        values
-            Parameter values of an approximate fit.
-        noise_rms
-            Noise on the friction, N.
+        The parameter values are those of an approximate fit; `noise_rms` is the noise on the
+        friction, N.
         """
         prepared, settings = self.campaign.prepared, self.campaign.settings.transient
         memory = initial_memory(self.law, self.effects, settings)

@@ -30,17 +30,10 @@ def zero_offset(step_n: float, readings_n: Array) -> float:
 def quantisation_bias(step_n: float, noise_rms: float, force_n: Array) -> Array:
     """Quantisation bias of the mean reading, shape (n,), N.
 
-    A converter that rounds down is equivalent to one that rounds to the nearest step and has a zero
-    offset of half a step. Relative to this offset, the bias is the same for both.
-
-    Parameters
-    ----------
-    step_n
-        Quantisation step of the converter, N.
-    noise_rms
-        Standard deviation of the noise before the converter, N.
-    force_n
-        Difference between the force and a reading of the converter, shape (n,), N.
+    `force_n` is the difference between the force and a reading of the converter, shape (n,), and
+    `noise_rms` the standard deviation of the noise before the converter, N. A converter that rounds
+    down is equivalent to one that rounds to the nearest step and has a zero offset of half a step.
+    Relative to this offset, the bias is the same for both.
     """
     turn, ratio = 2.0 * np.pi * force_n / step_n, np.pi * noise_rms / step_n
     waves = (
@@ -51,15 +44,7 @@ def quantisation_bias(step_n: float, noise_rms: float, force_n: Array) -> Array:
 
 
 def bias_rms(step_n: float, noise_rms: float) -> float:
-    """RMS of the quantisation bias over the force, N.
-
-    Parameters
-    ----------
-    step_n
-        Quantisation step of the converter, N.
-    noise_rms
-        Standard deviation of the noise on the force before it is converted, N.
-    """
+    """RMS of the quantisation bias over the force, N, for a noise before the converter, N."""
     ratio = math.pi * noise_rms / step_n
     return step_n / math.pi * math.exp(-2.0 * ratio**2) / math.sqrt(2.0)
 
@@ -67,16 +52,11 @@ def bias_rms(step_n: float, noise_rms: float) -> float:
 def noise_before_converter(step_n: float, moves_n: Array) -> float:
     """Estimate the standard deviation of the noise before the converter, N, from equal readings.
 
+    `moves_n` has the differences between successive readings of a slowly varying force, shape (n,).
     The estimate uses the fraction of readings that equal the preceding one. Two values a Gaussian
-    distance d apart, at a random position within the steps, give the same reading with probability
-    `E max(0, 1 - |d| / q)`. Third differences would count the quantisation steps as noise.
-
-    Parameters
-    ----------
-    step_n
-        Quantisation step q of the converter, N.
-    moves_n
-        Differences between successive readings of a slowly varying force, shape (n,), N.
+    distance d apart, at a random position within the steps q, give the same reading with
+    probability `E max(0, 1 - |d| / q)`. Third differences would count the quantisation steps as
+    noise.
     """
     if not len(moves_n):
         return 0.0

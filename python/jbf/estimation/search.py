@@ -219,14 +219,8 @@ def other_peaks(
 ) -> list[Array]:
     """Best local minima of `square` as a function of one parameter, except the current one.
 
-    Parameters
-    ----------
-    square
-        Sum of squares as a function of the parameter values.
-    index
-        Index of the parameter.
-    lower, upper
-        Bounds of the parameter, a positive scale.
+    `square` is the sum of squares as a function of the parameter values. The parameter with the
+    index `index`, a positive scale, has the bounds `lower` and `upper`.
     """
     reach = np.log(REACH)
     scanned = values[index] * np.exp(np.linspace(-reach, reach, POINTS))

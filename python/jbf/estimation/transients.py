@@ -44,10 +44,7 @@ def check_film_rate(
 ) -> None:
     """Raise an InputError if the film of a law is too fast for the records at every start value.
 
-    Parameters
-    ----------
-    seed
-        Starting values by name; the other parameters have those of the catalogue.
+    `seed` has starting values by name; the other parameters have those of the catalogue.
     """
     if not find_law(law).has_film:
         return
@@ -77,12 +74,8 @@ def check_film_rate(
 def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
     """Mask of the samples at which a film still depends on motion in a gap, one per run.
 
-    Parameters
-    ----------
-    values
-        Parameter values of an approximate fit.
-    least_n
-        Difference of the friction that is negligible, N.
+    The parameter values are those of an approximate fit. A difference of the friction of `least_n`,
+    N, is negligible.
 
     Notes
     -----

@@ -47,16 +47,8 @@ def score_square(
 ) -> float:
     """Squared score divided by its long-run variance; chi-square, one degree per direction.
 
-    The variance of each direction is at least that of white noise.
-
-    Parameters
-    ----------
-    directions
-        Orthonormal columns, shape (n, q).
-    innovations
-        Innovations of unit variance, shape (n,).
-    step_s
-        Usual sampling interval, s.
+    The directions are orthonormal columns, shape (n, q), and the innovations, shape (n,), have unit
+    variance. The variance of each direction is at least that of white noise.
     """
     score = directions.T @ innovations
     # The part explained by the score itself is signal, not noise.
@@ -73,10 +65,8 @@ def score_inflation(
 ) -> float:
     """Ratio, at least one, of the variance of a score to its variance in white noise.
 
-    Parameters
-    ----------
-    directions, innovations
-        Derivatives of the score and innovations, one array a run, shape (n,); of any scale.
+    The directions are the derivatives of the score. They and the innovations have any scale, and
+    one array a run, shape (n,).
     """
     directions, square = _scaled(directions)
     white = _mean_square(innovations)
@@ -137,12 +127,8 @@ def cluster_inflation(
     """Variance of a score relative to white noise, from the scatter between runs as clusters.
 
     The ratio is zero if the scatter is not significant. An offset that differs between runs lasts
-    longer than any window, so that the runs are used as clusters (Liang & Zeger 1986).
-
-    Parameters
-    ----------
-    inflation
-        Ratio from windows within the runs (`score_inflation`).
+    longer than any window, so that the runs are used as clusters (Liang & Zeger 1986). `inflation`
+    is the ratio from windows within the runs (`score_inflation`).
     """
     scores = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
     sizes = np.array([float(d @ d) for d in directions])
@@ -179,12 +165,8 @@ def long_run_variance(
 def blocks_of(samples: Samples, share: float) -> Places:
     """First index of each block among the weighted samples of all runs, concatenated.
 
-    No block spans two runs.
-
-    Parameters
-    ----------
-    share
-        Number of independent samples per sample; smaller for a longer correlation time.
+    No block spans two runs. `share` is the number of independent samples per sample; it is smaller
+    for a longer correlation time.
     """
     settings, starts, offset = samples.settings.blocks, [], 0
     for weight, step in zip(samples.weight, samples.steps_s, strict=True):

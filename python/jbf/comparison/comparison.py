@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from jbf.comparison.patterns import Failure, find_failures
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.jumps import active_effects, samples_near_jumps
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import Samples
+from jbf.estimation.uncertain_samples import active_effects, samples_near_jumps
 from jbf.models.catalogue import parameters_of, transition_speed
 from jbf.models.chain import chain, warn_of_fast_film
 from jbf.models.model import Model

@@ -29,14 +29,13 @@ from jbf.estimation.held_out import (
     indispensable_runs,
 )
 from jbf.estimation.held_out_comparison import ExtrapolatedRun, extrapolated_runs
-from jbf.estimation.initial_state import has_unknown_start
-from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.estimation.minimum import polish, search_peaks, settle
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.problem import Problem
 from jbf.estimation.search import NEAR_MINIMUM
 from jbf.estimation.solution import Solution
+from jbf.estimation.uncertain_samples import has_unknown_start, spreads_jumps
 from jbf.models.catalogue import can_be_added, find_effect, reason_not_applicable
 from jbf.models.catalogue import effects as catalogue
 from jbf.models.vocabulary import Clock

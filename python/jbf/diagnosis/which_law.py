@@ -21,9 +21,9 @@ from jbf.diagnosis.review import TERMS, start_model, with_errors_of_motion
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_parts
-from jbf.estimation.initial_state import initial_memory
 from jbf.estimation.samples import Samples
 from jbf.estimation.transients import check_film_rate, without_transients
+from jbf.estimation.uncertain_samples import initial_memory
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock

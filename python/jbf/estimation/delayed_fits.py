@@ -19,12 +19,11 @@ from scipy import optimize
 from jbf.estimation.delays import delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.least_squares import unexplained_square
-from jbf.estimation.motion_error_scale import estimate_motion_errors
+from jbf.estimation.minimum import huber
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
-from jbf.estimation.posterior_motions import corrected_for_delay, shifted
+from jbf.estimation.posterior_motions import corrected_for_delay, estimate_motion_errors, shifted
 from jbf.estimation.problem import Problem
-from jbf.estimation.robust_fit import huber
 from jbf.estimation.search import NEAR_MINIMUM, search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU

@@ -18,12 +18,11 @@ from jbf.estimation.estimates import Estimates
 from jbf.estimation.generalised_least_squares import with_motion_errors
 from jbf.estimation.identifiability import correlations, parameter_values, reset_unidentified
 from jbf.estimation.likelihood import log_likelihood
-from jbf.estimation.minimum import minimum, not_above_nested
+from jbf.estimation.minimum import best_weighting, minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.posterior_motions import delay_of_further_runs_s
 from jbf.estimation.problem import Problem, named_values
-from jbf.estimation.robust_fit import best_weighting
 from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import doubtful_errors, standard_errors
 from jbf.estimation.transients import check_film_rate

@@ -22,11 +22,11 @@ from jbf.estimation.delayed_fits import (
     near_solution,
 )
 from jbf.estimation.minimum import polish
-from jbf.estimation.motion_error_scale import estimate_motion_errors
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
     corrected_delay_s,
+    estimate_motion_errors,
     posteriors,
     shifted,
     with_corners_located_by_forces,

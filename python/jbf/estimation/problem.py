@@ -17,14 +17,21 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.bounds import Bounds, bounded_pages
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import has_unknown_start, initial_memory, transient_masks
-from jbf.estimation.jumps import active_effects, moves_jumps, samples_near_jumps, spreads_jumps
 from jbf.estimation.least_squares import MOST_HELD, OnDemand, memory_groups, select_runs, triangular
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.starting_values import with_starts
+from jbf.estimation.uncertain_samples import (
+    active_effects,
+    has_unknown_start,
+    initial_memory,
+    moves_jumps,
+    samples_near_jumps,
+    spreads_jumps,
+    transient_masks,
+)
 from jbf.models.catalogue import (
     Parameter,
     find_law,

@@ -4,7 +4,7 @@ The likelihood, the score tests and all tests of the residual structure of a mod
 selection and weights. A sample is excluded in three cases. Within a few samples of a reversal, the
 record does not determine the sign of the friction. Position and speed may contradict each other. At
 rest, friction balances the force of the drive up to the breakaway level, and a law predicts no
-value. A model may exclude further samples (`jumps`). A fit uses the weight of each sample; a test
+value. A model may exclude more (`uncertain_samples`). A fit uses the weight of each sample; a test
 uses the included samples only (`counted`).
 """
 
@@ -112,10 +112,9 @@ class Samples:
         With `of_level`, they describe the noise level of each sample, otherwise heavy-tailed noise.
         """
         weight = tuple(w * f for w, f in zip(self.weight, factors, strict=True))
-        if not of_level:
-            return replace(self, weight=weight)
-        before = self.level or [np.ones(len(w)) for w in weight]
-        level = tuple(a * b for a, b in zip(before, factors, strict=True))
+        level = self.level or tuple(np.ones(len(w)) for w in weight)
+        if of_level:
+            level = tuple(a * b for a, b in zip(level, factors, strict=True))
         return replace(self, weight=weight, level=level)
 
     def with_known_motion(self) -> Samples:

@@ -1,9 +1,9 @@
 """Exclusion of samples that depend on an unrecorded state of the model.
 
-A film, a contact or a load cell with backlash starts a run in an unknown state (`initial_state`). A
-film also depends on motion in a gap of the record. These samples do not identify the friction law
-and are excluded for every model of the campaign. An InputError is raised for a film that is too
-fast for the sampling rate of the records.
+A film, a contact or a load cell with backlash starts a run in an unknown state
+(`uncertain_samples`). A film also depends on motion in a gap of the record. These samples do not
+identify the friction law and are excluded for every model of the campaign. An InputError is raised
+for a film that is too fast for the sampling rate of the records.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from jbf import _core
 from jbf.errors import InputError
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import has_unknown_start, initial_memory
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from jbf.estimation.uncertain_samples import has_unknown_start, initial_memory
 from jbf.models.catalogue import find_effect, find_law
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven

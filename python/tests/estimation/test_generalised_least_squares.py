@@ -10,8 +10,8 @@ import pytest
 from jbf import Drive, Model, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
-from jbf.estimation.motion_error_scale import estimate_motion_errors
 from jbf.estimation.noise import WHITE
+from jbf.estimation.posterior_motions import estimate_motion_errors
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.records.motion.estimated_motion import estimate_motion

@@ -12,7 +12,6 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import Memory, initial_memory, transient_masks
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
@@ -25,6 +24,7 @@ from jbf.estimation.transients import (
     without_further_transients,
     without_transients,
 )
+from jbf.estimation.uncertain_samples import Memory, initial_memory, transient_masks
 from jbf.models.chain import core_motion
 
 NOISE_N = 0.05

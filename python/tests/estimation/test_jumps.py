@@ -14,7 +14,9 @@ from by_hand import Array
 from campaigns import campaign
 from jbf import Model, Parameter, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.jumps import (
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.uncertain_samples import (
     active_effects,
     jumps,
     moves_jumps,
@@ -22,8 +24,6 @@ from jbf.estimation.jumps import (
     spreads_jumps,
     timing_errors,
 )
-from jbf.estimation.prepared import Prepared
-from jbf.estimation.problem import Problem
 from jbf.models.catalogue import parameters_of
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from rigsim.motions import sine

@@ -13,10 +13,17 @@ from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_by_run
 from jbf.estimation.likelihood import likelihood_gain, noise_at
-from jbf.estimation.minimum import minimum, polish, search_peaks, settle
+from jbf.estimation.minimum import (
+    best_weighting,
+    huber,
+    minimum,
+    polish,
+    search_peaks,
+    settle,
+    student,
+)
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
-from jbf.estimation.robust_fit import best_weighting, huber, student
 from jbf.estimation.search import other_peaks
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution

@@ -26,7 +26,7 @@ NUMERICAL = {
         diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND
         diagnosis.power.strength: DRAWS
         estimation.delay_scan: LEAST_STEPS CLIPPED BLURRED
-        estimation.robust_fit: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
+        estimation.minimum: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
         estimation.standard_errors: BENT
         estimation.trajectory_fit: REST_SHARE
     """,
@@ -49,7 +49,7 @@ NUMERICAL = {
         estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
-        estimation.motion_error_scale: EXACT_RECORD RATIO_STEP
+        estimation.posterior_motions: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS
         estimation.random_effects: ROUNDING
         estimation.levenberg_marquardt: MAX_DAMPING TRUSTED
@@ -69,9 +69,8 @@ NUMERICAL = {
         estimation.held_out: EVALUATIONS
         estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP BLOCK
         estimation.approach: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED
-        estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
+        estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS ROBUST_ROUNDS
         estimation.problem: SLOPES_COST
-        estimation.robust_fit: ROUNDS
         estimation.search: CLIMBED
         estimation.transients: RANKING_EVALUATIONS
         estimation.work: STEPS_A_SAMPLE ANY_STEPS
@@ -102,14 +101,14 @@ NUMERICAL = {
         estimation.delay_scan: REACH LEAST_REACH_STEPS
         estimation.delayed_fits: MAX_BRACKETS
         estimation.generalised_least_squares: LEAST_INTENSITY
-        estimation.motion_error_scale: LEAST_NOISE MOST_NOISE MOST_SCALE RATIOS
+        estimation.posterior_motions: LEAST_NOISE MOST_NOISE MOST_SCALE RATIOS
         estimation.quantisation: MOST_NOISE
         estimation.search: REACH
     """,
     "property of a distribution or an estimator, no choice": """
         diagnosis.terms.noise_variance: ERROR
         estimation.campaign: NOISE_SPAN
-        estimation.jumps: MOST
+        estimation.uncertain_samples: MOST
     """,
     "path or starting values of searches": """
         estimation.levenberg_marquardt: INITIAL_DAMPING LEAST_FACTOR FIRST_INCREASE
@@ -127,7 +126,7 @@ NUMERICAL = {
 """Constants outside the policy: why they decide nothing, and their names by module."""
 COMPARED = {
     ("estimation.bootstrap", 100.0),  # the bootstrap enters no verdict
-    ("estimation.jumps", 3.0),  # three values have a second difference
+    ("estimation.uncertain_samples", 3.0),  # three values have a second difference
     ("estimation.trajectory_fit", 1e6),  # a fit of simulated motions enters no verdict
 }
 """Numbers other than 0, 1, 2 and a half in comparisons."""

@@ -24,9 +24,9 @@ from jbf.diagnosis.terms.shifts import (
 )
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delays import drift_step, run_delay_step
-from jbf.estimation.jumps import samples_near_jumps
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.solution import Solution
+from jbf.estimation.uncertain_samples import samples_near_jumps
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 

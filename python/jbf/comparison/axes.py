@@ -13,11 +13,10 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.bins import Axis, Bin, Binned, Places
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
-
-Array = npt.NDArray[np.float64]
 
 ANGLE_BINS = 24
 TIME_BINS = 12

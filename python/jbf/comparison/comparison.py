@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.patterns import Failure, find_failures
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise_floor import noise_floor
@@ -19,8 +19,6 @@ from jbf.models.model import Model
 from jbf.records.findings.finding import Finding
 from jbf.records.run import PathLike
 from jbf.results import Result
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

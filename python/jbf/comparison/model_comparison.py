@@ -9,13 +9,13 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.comparison import Comparison
 from jbf.errors import InputError
 from jbf.estimation.held_out_comparison import independent_units
 from jbf.estimation.settings import DEFAULT
 from jbf.results import Result
 
-Array = npt.NDArray[np.float64]
 Unit = Literal["run", "stroke"]
 
 

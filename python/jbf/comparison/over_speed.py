@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.axes import BOUNDARY_SHARE
 from jbf.comparison.comparison import Comparison
 from jbf.comparison.parts import added_by, non_friction_effects
 from jbf.models.catalogue import transition_speed
 from jbf.models.model import Model
-
-Array = npt.NDArray[np.float64]
 
 BINS = 24
 FEWEST = 5

@@ -9,14 +9,12 @@ import warnings
 from collections.abc import Collection
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.comparison import Comparison, predicted
 from jbf.errors import FilmWarning
 from jbf.models.chain import chain
 from jbf.models.model import Model
-
-Array = npt.NDArray[np.float64]
 
 NO_FRICTION = (
     "inertia",

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.axes import all_axes
 from jbf.comparison.bins import Axis, Bin, Binned, labels
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.samples import Samples
 
-Array = npt.NDArray[np.float64]
 Counts = npt.NDArray[np.intp]
 
 LEAST_SHARE = 0.01

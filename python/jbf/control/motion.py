@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.control.bench import THESIS_BENCH, Bench
 from jbf.control.task import RECORDED, Task
 from jbf.errors import InputError
 from jbf.records.rig import Rig
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 
 class Motion(NamedTuple):

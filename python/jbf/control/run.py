@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
 from jbf.control.loop import core_loop
 from jbf.control.schemes import SCHEMES, Scheme, scheme
@@ -19,8 +20,6 @@ from jbf.models.chain import core_load_n, core_refusals
 from jbf.models.model import Model, the_model
 from jbf.records.arguments import described, of_kind
 from jbf.results import Result as SharedResult
-
-Array = npt.NDArray[np.float64]
 
 _NEVER = 2**62
 _COLUMNS = (

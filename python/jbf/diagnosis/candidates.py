@@ -12,7 +12,6 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.directions import RichestResidual
@@ -41,7 +40,6 @@ from jbf.models.catalogue import effects as catalogue
 from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
-Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 6
 """Largest number of model evaluations of the approximate fit by which a candidate is ranked.

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Progress
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
@@ -24,8 +25,6 @@ from jbf.models.model import Model
 from jbf.records.arguments import check_callable, checked_integer, list_of_runs, of_kind
 from jbf.records.run import Run
 from jbf.results import Result
-
-Names = tuple[str, ...]
 
 SURE = 0.95
 """Confidence level of the interval of a rate (Clopper & Pearson 1934), not used in a verdict."""

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array, Names
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.held_out import HeldOutPart, errors_by_run
@@ -17,9 +18,6 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import common_samples
 from jbf.estimation.settings import HeldOutSettings
 from jbf.estimation.solution import Solution
-
-Array = npt.NDArray[np.float64]
-Names = tuple[str, ...]
 
 
 @dataclass(frozen=True)

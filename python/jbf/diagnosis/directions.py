@@ -12,15 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft, special
 
+from jbf.arrays import Array
 from jbf.estimation.least_squares import unexplained
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.samples import Samples
 from jbf.estimation.variance import Places, blocks_of, significant_inflation
-
-Array = npt.NDArray[np.float64]
 
 DECOY_DRAWS = 200
 """Number of decoy campaigns; not used in a verdict."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.diagnosis.directions import Directions
 from jbf.estimation.approach import Approach
 from jbf.estimation.campaign import Campaign
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from jbf.diagnosis.candidates import Candidates
     from jbf.diagnosis.terms.proposal import Proposal
 
-Array = npt.NDArray[np.float64]
 State = Literal["posed", "looked", "ranked", "converged"]
 
 

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from jbf.arrays import Names
+
 Outcome = Literal["added", "ties", "rejected", "negligible", "no gain", "confounder", "replaced"]
-Names = tuple[str, ...]
 
 CONFOUNDER = (
     "not named: the runs disagree on it, more structure remains than it explains, or none of its "

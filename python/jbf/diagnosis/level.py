@@ -19,9 +19,9 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array
 from jbf.diagnosis.directions import (
     Directions,
     RichestResidual,
@@ -33,8 +33,6 @@ from jbf.estimation.least_squares import least_squares, triangular
 from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-
-Array = npt.NDArray[np.float64]
 
 DRAWS = 4000
 """Number of bootstrap draws; forty of them exceed a level of one per cent.

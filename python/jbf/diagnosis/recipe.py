@@ -6,6 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
+from jbf.arrays import Names
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.budget import (
     ALTERNATIVES,
@@ -30,7 +31,6 @@ from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.review import (
     OFFSET,
-    Names,
     machine_of,
     start_model,
     weights,

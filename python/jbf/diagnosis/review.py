@@ -16,6 +16,7 @@ from dataclasses import replace
 
 from scipy import special
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.estimation.approach import many_peaks
@@ -25,8 +26,6 @@ from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_removed
 from jbf.records.rig import Rig
-
-Names = tuple[str, ...]
 
 OFFSET = "sensor_offset"
 TERMS = (OFFSET, "inertia", "gravity")

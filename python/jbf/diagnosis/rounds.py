@@ -7,11 +7,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.residual_structure import find_residual_structure
-from jbf.diagnosis.review import Names, reconsider, start_model, still_needed
+from jbf.diagnosis.review import reconsider, start_model, still_needed
 from jbf.diagnosis.selection import Follow, Round, try_candidates
 from jbf.diagnosis.terms import best_term_update, re_estimated_motion
 from jbf.errors import Unfinished

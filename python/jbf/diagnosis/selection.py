@@ -13,6 +13,7 @@ from typing import Literal
 
 import numpy as np
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import Outcome, Trial
@@ -21,7 +22,6 @@ from jbf.estimation.approach import many_peaks
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
 
-Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
 LESS = 0.95

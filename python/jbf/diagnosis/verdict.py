@@ -15,6 +15,7 @@ from typing import Literal
 
 import numpy as np
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
@@ -26,7 +27,6 @@ from jbf.estimation.starting_values import scales
 from jbf.models.catalogue import Parameter, find_effect
 from jbf.models.parameter_value import ParameterValue
 
-Names = tuple[str, ...]
 Verdict = Literal["adequate", "missing", "ambiguous", "unexplained"]
 
 LEVEL, STIFFNESS = "F_c", "sigma_0"

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.review import TERMS, start_model, with_errors_of_motion
@@ -27,9 +27,6 @@ from jbf.estimation.uncertain_samples import initial_memory
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 SIMPLEST = "coulomb"
 """The simplest law of dry friction."""

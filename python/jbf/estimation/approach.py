@@ -12,8 +12,8 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.estimation.least_squares import unexplained_square
 from jbf.estimation.levenberg_marquardt import SearchResult
 from jbf.estimation.likelihood import noise_at
@@ -23,7 +23,6 @@ from jbf.estimation.search import Visited, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import Parameter, find_effect
 
-Array = npt.NDArray[np.float64]
 TRIAL_EVALUATIONS = 6
 """Evaluations spent on each starting point before only the best one is followed. With half of them,
 an effect whose null is a flat region of the objective stays at its null."""

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit
@@ -43,7 +44,6 @@ from jbf.records.run import Run
 from jbf.results import Result
 from jbf.threads import one_blas_thread
 
-Array = npt.NDArray[np.float64]
 LEAST_REPEATS = 19
 """Minimum number of repeats: fewer do not determine the width of the central 68 %."""
 MOST_REPEATS = 100_000

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
@@ -38,8 +38,6 @@ from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.records.weight_angle import check_weight_angles
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 DISTORTS_FORCE = frozenset((
     "sensor_hysteresis", "sensor_lag", "sensor_nonlinearity", "time_delay", "backlash",
     "drive_compliance",

@@ -22,9 +22,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array
 from jbf.estimation.delays import fine_force
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.problem import Problem
@@ -34,7 +34,6 @@ from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import StandardErrors
 from jbf.models.delayed_reading import TAU, DelayedChain
 
-Array = npt.NDArray[np.float64]
 LEAST_STEPS = 0.05
 """Smallest resolvable delay, in sampling intervals: a jump then occurs at another sample."""
 REACH = 5.0

@@ -13,9 +13,9 @@ from itertools import pairwise
 from operator import attrgetter, methodcaller
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize
 
+from jbf.arrays import Array
 from jbf.estimation.delays import delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.least_squares import unexplained_square
@@ -28,7 +28,6 @@ from jbf.estimation.search import NEAR_MINIMUM, search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 
-Array = npt.NDArray[np.float64]
 ROUNDS = 8
 """Largest number of iterations of sensitivities and fits."""
 SETTLED = 0.01

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage, special
 
+from jbf.arrays import Array
 from jbf.estimation.least_squares import triangular
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
@@ -29,7 +30,6 @@ from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 from jbf.models.delayed_reading import TAU
 
-Array = npt.NDArray[np.float64]
 Clocks = Literal["by run", "drift", "drift and delay"]
 """Clock models of the forces.
 

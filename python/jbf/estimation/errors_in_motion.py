@@ -22,9 +22,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf._core import MotionWhitening
+from jbf.arrays import Array
 from jbf.records.motion.estimated_motion import MotionErrors
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

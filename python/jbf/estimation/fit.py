@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, Stopped, Unfinished
 from jbf.estimation.bounds import bounded_pages, checked_bounds
 from jbf.estimation.campaign import Campaign
@@ -41,7 +41,6 @@ from jbf.records.run import Run
 from jbf.records.weight_angle import weight_acts_over
 from jbf.threads import one_blas_thread
 
-Array = npt.NDArray[np.float64]
 CovType = Literal["model", "bootstrap"]
 """Method for the standard errors."""
 

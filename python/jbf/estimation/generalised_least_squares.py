@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf.estimation.delayed_fits import (
     EVALUATIONS,
@@ -38,7 +37,6 @@ from jbf.estimation.search import search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 
-Array = npt.NDArray[np.float64]
 INTENSITY_STEP = 3.0
 """Factor on the noise intensity between two motions whose likelihoods are compared."""
 LEAST_INTENSITY = 1e-4

@@ -11,8 +11,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.estimation.approach import null_or_start
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.least_squares import triangular
@@ -22,8 +22,6 @@ from jbf.estimation.search import NEAR_MINIMUM, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 EVALUATIONS = 12
 """Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs."""
 SHORT = 3.0

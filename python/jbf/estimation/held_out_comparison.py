@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import HeldOutPart
 from jbf.estimation.noise import Noise
@@ -29,8 +30,6 @@ from jbf.estimation.settings import DEFAULT, HeldOutSettings
 from jbf.estimation.solution import Solution
 from jbf.records.recorded_load import recorded_load
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 Strokes = npt.NDArray[np.intp]
 Units = list[tuple[int, Mask]]
 """Index of the run of each unit, and a mask of the run's included samples in the unit."""

@@ -12,8 +12,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.estimation.bounds import at_bound, bound_note
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -21,7 +21,6 @@ from jbf.estimation.standard_errors import StandardErrors
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
 
-Array = npt.NDArray[np.float64]
 HELD = "held at the given value"
 """Note of a parameter that was not fitted."""
 STATED = "not fitted: a given value, or a reference taken from the runs"

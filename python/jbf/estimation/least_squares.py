@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
+
 MOST_HELD = 2_000_000
 """Largest number of values (samples times parameters) that a solution holds. Larger results are
 computed again for each access."""

@@ -17,10 +17,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
+
 INITIAL_DAMPING = 1e-4
 """Damping of the first step, relative to the squares of the columns of the Jacobian."""
 LEAST_FACTOR = 1.0 / 3.0

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.estimation.least_squares import unexplained_square
 from jbf.estimation.noise import WHITE, Noise, estimate_noise
 from jbf.estimation.problem import Lines, Problem
@@ -19,8 +19,6 @@ from jbf.estimation.samples import Samples, common_samples
 from jbf.estimation.settings import DEFAULT, NoiseSettings
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import clipped_square, robust_size, significant_inflation
-
-Array = npt.NDArray[np.float64]
 
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:

@@ -16,8 +16,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.estimation.approach import TRIAL_EVALUATIONS, approach
 from jbf.estimation.held_out import held_out_by_run
 from jbf.estimation.levenberg_marquardt import SearchResult
@@ -29,7 +29,6 @@ from jbf.estimation.search import NEAR_MINIMUM, other_peaks, search, search_solu
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
 
-Array = npt.NDArray[np.float64]
 MAX_EVALUATIONS = 60
 """Maximum number of evaluations of a search that converges."""
 FOLLOWED_IN_A_FIT = 6

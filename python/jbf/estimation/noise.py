@@ -13,14 +13,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize, special
 
 from jbf import _core
+from jbf.arrays import Array, Mask
 from jbf.estimation.settings import DEFAULT, NoiseSettings
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

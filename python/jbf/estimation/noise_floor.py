@@ -8,15 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, NoiseSettings, PeriodSettings
 from jbf.records.motion.rests import certain_rests
 from jbf.records.motion.roughness import noise_of
-
-Array = npt.NDArray[np.float64]
 
 
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:

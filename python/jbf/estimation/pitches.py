@@ -21,14 +21,11 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
 from jbf.records.rig import Rig
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 LINES = 3
 """Number of highest spectral lines that are tried, each after removal of the higher ones."""

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize
 
+from jbf.arrays import Array
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.prepared import Prepared, coasting
@@ -25,7 +25,6 @@ from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.motion.readings import ForceReadings
 from jbf.records.motion.smoothing import Smoothed
 
-Array = npt.NDArray[np.float64]
 LATE = "late_channel"
 """Kind of the finding that states a corrected delay of the force."""
 STEP = 0.5

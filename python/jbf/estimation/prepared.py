@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.settings import DEFAULT, MotionSettings
 from jbf.models.chain import sampled_motion
@@ -30,10 +30,6 @@ from jbf.records.motion.readings import ReadingErrors
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.records.run_requirements import require, run_on
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
-
 
 FINER = 1.5
 """Ratio of the sampling rates of motion and force above which all motion samples are used."""

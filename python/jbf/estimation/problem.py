@@ -12,8 +12,8 @@ from copy import copy
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.bounds import Bounds, bounded_pages
 from jbf.estimation.campaign import Campaign
@@ -44,8 +44,6 @@ from jbf.models.vocabulary import Clock
 from jbf.records.arguments import by_name
 from jbf.records.toml_file import number
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 Lines = tuple[list[Array], list[Array]]
 """Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
+
 MOST_NOISE = 3.0
 """Largest noise that is considered, in steps; at larger noise the quantisation is negligible."""
 HARMONICS = 3

@@ -13,12 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array
 from jbf.estimation.noise import Noise
 
-Array = npt.NDArray[np.float64]
 ROUNDING = 1e-9
 """Fraction of the total precision below which that of the other runs is treated as zero."""
 

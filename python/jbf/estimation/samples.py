@@ -18,14 +18,13 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.estimation.errors_in_motion import ErrorsInMotion, Whitening
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.settings import DEFAULT, Settings
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 T = TypeVar("T", bound=np.generic)
 
 

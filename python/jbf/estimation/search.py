@@ -12,15 +12,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.estimation.levenberg_marquardt import SearchResult, minimise
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 
-Array = npt.NDArray[np.float64]
 NEAR = 0.3
 """Largest relative difference of each parameter between two points compared for equivalence."""
 SAME = 0.1

@@ -6,13 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-import numpy.typing as npt
-
+from jbf.arrays import Array
 from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.estimation.bounds import bound_note
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -21,8 +21,6 @@ from jbf.estimation.variance import cluster_inflation, score_inflation
 from jbf.models.catalogue import find_effect
 from jbf.models.parameter_value import ParameterValue
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 INSENSITIVE = 1e-9
 """Fraction of the largest derivative below which the runs do not depend on a parameter."""
 SINGULAR = 1e12

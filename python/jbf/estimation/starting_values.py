@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.pitches import known_pitches, longest_pitch, mass, pitches
@@ -21,8 +21,6 @@ from jbf.estimation.prepared import Prepared
 from jbf.models.catalogue import Parameter
 from jbf.records.findings.slow_temperature import recorded_temperature
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 Starts = tuple[float, ...]
 CELL_ERROR = 0.03
 """Starting value of a load-cell error, as a fraction of the largest force."""

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import optimize
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.estimation.estimates import Estimates
 from jbf.estimation.identifiability import reason_not_identifiable
@@ -27,7 +28,6 @@ from jbf.records.rig import Rig
 from jbf.records.toml_file import number
 from jbf.threads import one_blas_thread
 
-Array = npt.NDArray[np.float64]
 REST_SHARE = 1e-9
 """Fraction of the top speed below which a sample is at rest, where friction is set-valued."""
 

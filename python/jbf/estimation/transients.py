@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
@@ -31,8 +32,6 @@ from jbf.models.driven import Driven
 from jbf.models.vocabulary import Clock
 from jbf.records.findings.finding import Finding
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 EDGE = 1e-3
 """Fraction of a gap within which a simulated motion changes its speed."""
 RANKING_EVALUATIONS = 8

@@ -23,8 +23,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, JumpSettings, TransientSettings
@@ -32,8 +32,6 @@ from jbf.models.catalogue import Parameter, find_effect, find_law
 from jbf.models.chain import core_motion
 from jbf.models.driven import DrivenChain
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 MOST = 0.29
 """Standard deviation of a uniform position between two samples, relative to their distance."""
 

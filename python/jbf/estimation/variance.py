@@ -20,10 +20,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, VarianceSettings
 
-Array = npt.NDArray[np.float64]
 Places = npt.NDArray[np.intp]
 
 

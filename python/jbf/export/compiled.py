@@ -9,13 +9,12 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.export.reference import Reference
 from jbf.export.target import STEM
 
-Array = npt.NDArray[np.float64]
 OPTIONS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
 COLUMNS = (
     "time_s",

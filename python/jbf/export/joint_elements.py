@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.export.reference import Reference, force_of_effects
 from jbf.models.model import Model
 
-Array = npt.NDArray[np.float64]
 MOST_CHANGE = 8.0
 """Largest change of the logarithm of a fitted value, a factor of about 3000."""
 MOST_EVALUATIONS = 40

@@ -7,10 +7,8 @@ import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 
-import numpy as np
-import numpy.typing as npt
-
 from jbf import _core
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.export.joint_elements import Elements, JointForm
 from jbf.export.joint_form import joint_form
@@ -20,7 +18,6 @@ from jbf.export.reference import Reference
 from jbf.export.target import MAIN, Settings, Target, Written, xml_text
 from jbf.models.model import Model
 
-Array = npt.NDArray[np.float64]
 DCMOTOR = (3, 7, 0)
 """First version with `dcmotor` and with polynomial damping."""
 PASSIVE_DCMOTOR = (4, 0, 0)

@@ -7,11 +7,10 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.export.reference import Reference
 
-Array = npt.NDArray[np.float64]
 MOST_STEPS = 400_000
 """Largest number of steps of all runs, about ten seconds of computing time."""
 

@@ -9,10 +9,8 @@ import math
 from dataclasses import dataclass
 from importlib.resources import files as package_files
 
-import numpy as np
-import numpy.typing as npt
-
 from jbf import _core
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.export.c_syntax import C
 from jbf.export.compensator import EQUATIONS, ROOTS
@@ -25,7 +23,6 @@ from jbf.export.reference import BODY, Reference, force_of_effects, instrument
 from jbf.export.target import MAIN, Precision, Settings, Target, Written
 from jbf.models.model import Model
 
-Array = npt.NDArray[np.float64]
 SLOPES = """
 /* Assign the time derivatives of the bristles, and return the force that resists the motion. */
 {p}_real {p}_slopes({p}_state *state, const {p}_motion *motion);

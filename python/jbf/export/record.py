@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.models.chain import estimated_motion
 from jbf.models.driven_motion import driven_motion
 from jbf.models.model import Model
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

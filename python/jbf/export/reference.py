@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.export.ledger import RunLoss
 from jbf.models.catalogue import CARRIER, find_effect
@@ -18,8 +18,6 @@ from jbf.models.model import Model
 from jbf.records.arguments import list_of_runs
 from jbf.records.run import Run
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 BODY = ("inertia", "gravity")
 """Effects of the moved body: a simulator or a feedforward has them as mass and weight."""
 COGGING = ("cogging", "cogging_2")

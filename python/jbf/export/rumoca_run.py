@@ -7,11 +7,10 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.export.reference import Reference
 
-Array = npt.NDArray[np.float64]
 MOST_SAMPLES = 5_000
 """Largest number of samples of a run; the time of a simulation grows with its square."""
 TOLERANCE = 1e-7

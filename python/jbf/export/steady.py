@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.export.reference import Reference, part
 from jbf.records.checks import POINT, POINT_S
 from jbf.records.run import Run
 
-Array = npt.NDArray[np.float64]
 SPEEDS = 40
 """Number of logarithmic and of linear speeds at which the steady friction is computed."""
 SLOWEST_QUANTILE = 0.001

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.export.ledger import Status, Term
 from jbf.export.reference import BODY, COGGING, Reference, force_of_effects, instrument
@@ -18,7 +18,6 @@ from jbf.models.chain import estimated_motion
 from jbf.models.driven_motion import driven_motion
 from jbf.records.run import Run
 
-Array = npt.NDArray[np.float64]
 LEAST_POINTS = 4
 MOST_POINTS = 1000
 MAP_POINTS, MOST_MAP_POINTS = 32, 8192

@@ -10,9 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-import numpy.typing as npt
-
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.export.compensator import Compensator
 from jbf.export.ledger import Ledger, Term
@@ -20,7 +18,6 @@ from jbf.export.reference import Reference
 from jbf.results import Result
 from jbf.text_files import write_texts
 
-Array = npt.NDArray[np.float64]
 STEM = "@STEM@"
 """Text in a file that stands for the name of the main file without its suffix."""
 MAIN = ""

@@ -15,13 +15,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.importing.clock_offset import REMEDY, Offset, span, usual_step
 from jbf.importing.spool import Stream
-
-Array = npt.NDArray[np.float64]
 
 MOST_DRIFT = 3e-4
 """Largest drift in the search; several times the drift between two quartz clocks."""

@@ -14,11 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.importing.spool import Stream
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MIN_CORRELATION = 0.8
 """Minimum absolute correlation that is accepted."""

@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, quoted
 from jbf.importing.expression import OPEN, Binary, Call, Node, Number, Reference, Signed
 from jbf.units.table import ASK, BASES, NONE
 from jbf.units.unit import ONE, Unit, parse_unit
 
-Array = npt.NDArray[np.float64]
 Value = Array | float
 
 _RAD = BASES.index("rad")

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.importing.evaluation import column_unit, converted, evaluate
 from jbf.importing.expression import Binary, Node, Reference
 from jbf.importing.formats.table import Values
 from jbf.importing.targets import wanted_unit
-
-Array = npt.NDArray[np.float64]
 
 EPOCH_S = (1e8, 1e10)
 """Range of times that are interpreted as seconds since 1970."""

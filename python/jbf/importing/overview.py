@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.importing.cutting.load_steps import LOADS
 from jbf.importing.formats.table import BLOCK
 from jbf.importing.spool import Recording, Stream
 from jbf.importing.targets import FRICTION, MOTION
-
-Array = npt.NDArray[np.float64]
 
 _POINTS = 1_200
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.import_files import ReadFiles
 from jbf.importing.overview import Overview, overview
 from jbf.importing.run_text import run_columns, run_rows
 from jbf.records.drive_columns import DriveColumns
 from jbf.records.rig import Rig
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

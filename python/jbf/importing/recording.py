@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.importing.alignment import Alignment, align
 from jbf.importing.channels import (
@@ -35,7 +35,6 @@ from jbf.importing.time_line import TimeLine
 from jbf.importing.turns import unwrapped
 from jbf.records.checks import LARGEST
 
-Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
 
 UNLOADED_SHARE = 0.1

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.importing.channels import CUTTING_COLUMNS
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.formats.table import BLOCK
 from jbf.importing.spool import Recording, Stream
 from jbf.records.checks import COLUMNS, POINT
-
-Array = npt.NDArray[np.float64]
 
 
 def run_columns(recording: Recording) -> list[str]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.importing.expression import Node
 from jbf.importing.file_clock import FileClock
 from jbf.importing.formats.dates import as_date
@@ -21,9 +22,6 @@ from jbf.records.channels import SEPARATE_CLOCK_SHARE
 
 if TYPE_CHECKING:
     from jbf.importing.alignment import Alignment
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 
 @dataclass

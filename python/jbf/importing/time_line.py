@@ -10,11 +10,9 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.importing.spool import Dropped
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 _RESTART_SHARE = 0.05
 """Share of the elapsed time of a segment; a decrease to less than this share is a restart."""

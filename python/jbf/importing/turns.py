@@ -6,11 +6,9 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.importing.spool import Stream
-
-Array = npt.NDArray[np.float64]
 
 _ANGLES = ("angle_rad", "motor_angle_rad")
 _TURN = 2.0 * math.pi

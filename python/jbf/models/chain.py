@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array
 from jbf.errors import FilmWarning, InputError
 from jbf.models.catalogue import (
     CARRIER,
@@ -37,7 +37,6 @@ from jbf.records.run import Run
 from jbf.records.run_requirements import run_on
 from jbf.records.weight_angle import weight_offset
 
-Array = npt.NDArray[np.float64]
 MAX_STEP_S = 0.02
 """Longest inner step of a prediction, s.
 

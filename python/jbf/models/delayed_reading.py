@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.models.chain import chain
 from jbf.models.driven import Driven, DrivenChain
 from jbf.models.driven_motion import reversals, with_instants
@@ -21,8 +22,6 @@ from jbf.models.vocabulary import Clock
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 DELAY = "time_delay"
 TAU = "time_delay.tau_s"

@@ -13,9 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array
 from jbf.models.user_chain import UserChain
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

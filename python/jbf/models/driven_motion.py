@@ -11,14 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 MIN_MARGIN = 1e-3
 """Least distance of an additional instant from both samples, as a share of the step."""

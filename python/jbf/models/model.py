@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array
 from jbf.errors import InputError, quoted
 from jbf.models.catalogue import (
     find_clock,
@@ -47,7 +48,6 @@ from jbf.records.weight_angle import require_weight_angle
 from jbf.results import Shown
 from jbf.text_files import write_text
 
-Array = npt.NDArray[np.float64]
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 

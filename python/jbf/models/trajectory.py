@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import core_refusals
@@ -21,7 +22,6 @@ from jbf.records.arguments import by_name, described, numbers, the_rig
 from jbf.records.rig import Rig
 from jbf.records.toml_file import number
 
-Array = npt.NDArray[np.float64]
 Motion = tuple[npt.ArrayLike, npt.ArrayLike | tuple[float, float, float]]
 
 _NAMES = {"f_m": "f_m", "U_tr_m_s": "u_tr_m_s", "K0": "k0", "gamma": "gamma"}

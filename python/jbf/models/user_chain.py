@@ -12,12 +12,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf import _core
+from jbf.arrays import Array
 from jbf.models.user_effects import UserEffect
-
-Array = npt.NDArray[np.float64]
 
 NONLINEAR_EFFECTS = ("sensor_hysteresis", "sensor_nonlinearity")
 """Nonlinear effects of the instrument, for which superposition does not hold."""

@@ -21,15 +21,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, JbfError, quoted
 from jbf.models import catalogue
 from jbf.models.catalogue import Effect, Parameter, Stage
 from jbf.models.registration import Registration, Texts
 from jbf.records.run import PathLike
-
-Array = npt.NDArray[np.float64]
 
 MOTION_COLUMNS = {"velocity_m_s": "velocity", "acceleration_m_s2": "acceleration"}
 """Argument names that are column names of a file, each with the equivalent argument name."""

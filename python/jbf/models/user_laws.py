@@ -23,16 +23,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, quoted
 from jbf.models import catalogue
 from jbf.models.catalogue import Law, Parameter
 from jbf.models.registration import Registration
 from jbf.models.user_effects import MOTION_COLUMNS, UserEffect
 from jbf.models.vocabulary import AUTO
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.bins import Axis, Bin, direction_words, label, span_words
 from jbf.comparison.patterns import Failure
 from jbf.records.quantities import BEARING, Quantities
-
-Array = npt.NDArray[np.float64]
 
 
 def _names(quantities: Quantities) -> dict[Axis, str]:

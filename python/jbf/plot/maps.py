@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.models.number_format import number
 from jbf.plot.runs import axes_words, quantities_of
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from jbf.comparison.comparison import Comparison
 
-Array = npt.NDArray[np.float64]
 Over = Literal["time", "speed", "place", "run"]
 
 CELLS = 120

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.models.number_format import value_and_error
 from jbf.models.parameter_units import units_of
 from jbf.plot.style import INK, MEASURED, MODEL, dress, one_axes, plain
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from jbf.estimation.fit import Fit
     from jbf.models.parameter_value import ParameterValue
 
-Array = npt.NDArray[np.float64]
 
 LINEAR_PERCENT = 1.0
 """Linear threshold of the error axis, in percent of the value; the axis is logarithmic beyond it.

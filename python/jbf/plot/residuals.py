@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.plot.bin_axes import bin_axis
 from jbf.plot.runs import index_of, quantities_of
 from jbf.plot.style import (
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from jbf.estimation.fit import Fit
     from jbf.records.quantities import Quantities
 
-Array = npt.NDArray[np.float64]
 
 MOST_TICKS = 16
 MOST_DOTS = 4000

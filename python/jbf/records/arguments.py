@@ -21,7 +21,6 @@ from jbf.records.run import Run
 
 Kind = TypeVar("Kind")
 Word = TypeVar("Word", bound=str)
-Array = npt.NDArray[np.float64]
 
 
 def described(value: object) -> str:

@@ -13,11 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.records.checks import MIN_SAMPLES, MOTION, as_array, frozen
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 Channels = Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]
 
 SEPARATE_CLOCK_SHARE = 0.05

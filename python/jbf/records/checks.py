@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, quoted
 from jbf.records.counts import count_of
-
-Array = npt.NDArray[np.float64]
 
 MIN_SAMPLES = 10
 COLUMNS = (

@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError, closest, quoted
 from jbf.records.arguments import the_rig
 from jbf.records.channels import SEPARATE_CLOCK_SHARE, filled
@@ -35,9 +35,6 @@ from jbf.records.drive_columns import DriveColumns
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 from jbf.text_files import name_of, path_of
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 DRIVE_COLUMNS = (
     "torque_n_m",

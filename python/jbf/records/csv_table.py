@@ -8,12 +8,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.text_files import read_text
 
-Array = npt.NDArray[np.float64]
 HEADER_EXAMPLE = "time_s,velocity_m_s,friction_n"
 
 

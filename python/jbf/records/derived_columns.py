@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.channels import filled
 from jbf.records.checks import SLOW, frozen
 from jbf.records.findings.finding import Finding
-
-Array = npt.NDArray[np.float64]
 
 
 def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:

@@ -13,14 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.records.checks import frozen
 from jbf.records.drive import Drive
 from jbf.records.findings.finding import Finding
-
-Array = npt.NDArray[np.float64]
 
 COLUMNS_OF_EVERY_DRIVE = ("time_s", "load_n", "temperature_c")
 RPM = 2.0 * math.pi / 60.0

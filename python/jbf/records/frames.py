@@ -7,12 +7,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.results import optional
-
-Array = npt.NDArray[np.float64]
 
 
 def columns_of(frame: object, name: str) -> dict[str, Array]:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.rig import Rig
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 PRESSURE = "pressure_pa"
 LOAD_TORQUE = "load_n_m"

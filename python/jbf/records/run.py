@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.records.channels import Channels, recorded_samples, side_by_side
 from jbf.records.checks import (
@@ -36,8 +37,6 @@ from jbf.records.quantities import BEARING, Quantities
 from jbf.results import Shown, data_frame
 from jbf.text_files import write_text
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 PathLike = str | os.PathLike[str]
 
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.records.rig import Rig
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 WEIGHT_ANGLE = "weight_angle_rad"
 

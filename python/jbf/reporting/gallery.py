@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.axes import all_axes
 from jbf.comparison.parts import explained_residual
 from jbf.comparison.patterns import Failure, bin_means
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from jbf.diagnosis.ledger import Remainder
     from jbf.diagnosis.result import Diagnosis
 
-Array = npt.NDArray[np.float64]
 
 SIZE = (4.7, 3.0)
 LEAST_SHARE = 0.08

@@ -11,9 +11,7 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-import numpy as np
-import numpy.typing as npt
-
+from jbf.arrays import Array
 from jbf.units.table import (
     ALIASES,
     BASES,
@@ -25,8 +23,6 @@ from jbf.units.table import (
     UNITS,
     Dimensions,
 )
-
-Array = npt.NDArray[np.float64]
 
 _RAD = BASES.index("rad")
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import welch
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.records.run import Run
 from jbf.workbench.series import RunSeries, listed
@@ -15,7 +15,6 @@ from jbf.workbench.session import Session
 from jbf.workbench.thinning import stretch_of, thinned
 from jbf.workbench.views import series_of_run
 
-Array = npt.NDArray[np.float64]
 TRANSFORMS = ("value", "derivative", "spectrum")
 HALF_WINDOW = 3
 """Number of samples on each side over which a derivative is the slope of a straight line."""

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Mask
 from jbf.workbench.plane import Frame
 from jbf.workbench.series import RunSeries
 
-Mask = npt.NDArray[np.bool_]
 Places = npt.NDArray[np.int32]
 Size = tuple[int, int]
 DENSE = 100_000

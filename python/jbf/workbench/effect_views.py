@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.models.catalogue import effects as catalogue
 from jbf.models.model import Model
@@ -16,8 +16,6 @@ from jbf.workbench.series import listed
 from jbf.workbench.session import Session
 from jbf.workbench.thinning import stretch_of, thinned
 from jbf.workbench.views import series_of_run
-
-Array = npt.NDArray[np.float64]
 
 
 def contribution(base: Model, effect: str, values: Mapping[str, float], run: Run) -> Array:

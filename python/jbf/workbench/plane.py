@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
+from jbf.arrays import Array, Mask
+
 Counts = npt.NDArray[np.int64]
 Places = npt.NDArray[np.int32]
 

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.run import Run
 from jbf.workbench.thinning import stretch_of, thinned
 
-Array = npt.NDArray[np.float64]
 DIGITS = 6
 TIME_DIGITS = 11
 """Significant digits of times: one day in microseconds."""

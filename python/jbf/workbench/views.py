@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.workbench.density import Density, Size, density
 from jbf.workbench.plane import within
@@ -16,8 +16,6 @@ from jbf.workbench.series import RunSeries, as_modelled, as_read, drawn, listed
 from jbf.workbench.session import Session
 from jbf.workbench.thinning import ranges_of, stretch_of, thinned
 
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 MAP_SPEEDS = 24
 
 

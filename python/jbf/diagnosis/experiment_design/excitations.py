@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.models.catalogue import find_effect
@@ -19,8 +19,6 @@ from jbf.records.motion.known import known_motion
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.records.run_requirements import run_on
-
-Array = npt.NDArray[np.float64]
 
 COLUMNS = {*COLUMNS_OF_EVERY_RUN, "angle_rad", "position_m"}
 """Names of the columns that a proposed run can contain."""

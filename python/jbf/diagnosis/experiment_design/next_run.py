@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.experiment_design.excitations import (
     MOST_SAMPLES,
@@ -28,9 +28,6 @@ from jbf.estimation.least_squares import unexplained_square
 from jbf.models.catalogue import find_effect
 from jbf.models.driven import Driven
 from jbf.records.run import PathLike, Run
-
-Array = npt.NDArray[np.float64]
-Names = tuple[str, ...]
 
 LEAST_SAMPLES = 200
 """Smallest number of samples of a proposed run. It enters no verdict."""

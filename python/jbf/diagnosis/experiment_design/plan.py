@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.experiment_design.excitations import (
     MOST_SAMPLES,
@@ -39,8 +39,6 @@ from jbf.records.run import Run
 from jbf.records.toml_file import number
 from jbf.results import Result
 from jbf.threads import one_blas_thread
-
-Array = npt.NDArray[np.float64]
 
 ENOUGH, MORE = 4.0, 0.05
 """Information on an effect, in multiples of its threshold, that suffices; weight of any excess."""

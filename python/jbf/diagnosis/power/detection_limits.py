@@ -8,9 +8,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.power.distinction import (
     Change,
@@ -22,9 +22,6 @@ from jbf.diagnosis.power.distinction import (
 )
 from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
-
-Array = npt.NDArray[np.float64]
-Names = tuple[str, ...]
 
 LEVELS = (0.80, 0.95)
 """Detection probabilities for which a strength is computed. It enters no verdict."""

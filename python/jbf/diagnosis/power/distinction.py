@@ -18,13 +18,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize, special
 
+from jbf.arrays import Array
 from jbf.diagnosis.power.strength import PresentRuns, Strength
 from jbf.estimation.least_squares import spanned
-
-Array = npt.NDArray[np.float64]
 
 ALL_COLUMNS = slice(None)
 NEVER = 30.0

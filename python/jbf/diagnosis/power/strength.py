@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.noise import estimate_noise
@@ -19,9 +19,6 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import common_samples
 from jbf.estimation.variance import significant_inflation
 from jbf.models.catalogue import Parameter
-
-Array = npt.NDArray[np.float64]
-Names = tuple[str, ...]
 
 STRENGTH_RATIO = 2.0 ** (1.0 / 3.0)
 """Ratio of the strengths at which changes of the friction are computed.

@@ -16,8 +16,8 @@ from collections.abc import Callable, Sequence
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.comparison.axes import all_axes, force_axis
 from jbf.comparison.bins import Binned
 from jbf.comparison.patterns import STRONG_SHARE, Failure, bin_means, pattern_along
@@ -31,8 +31,6 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
-
-Array = npt.NDArray[np.float64]
 
 
 def find_residual_structure(

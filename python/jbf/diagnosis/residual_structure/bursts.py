@@ -12,16 +12,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.records.counts import count_of
-
-Array = npt.NDArray[np.float64]
 
 APART_S = 0.5
 """Largest time between two large innovations of the same burst, s. It concerns the text only."""

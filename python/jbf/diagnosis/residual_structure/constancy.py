@@ -21,9 +21,9 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array, Mask
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.held_out_comparison import Strokes, stroke_of
@@ -32,9 +32,6 @@ from jbf.estimation.solution import Solution
 from jbf.estimation.variance import score_square
 from jbf.models.catalogue import find_effect
 from jbf.models.parameter_units import unit_of
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 OIL = {"U_tr_m_s", "gamma"}
 """Parameters that both vary with the oil temperature: if one differs, both are excluded."""

@@ -16,9 +16,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
+from jbf.arrays import Array, Mask
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.policy_residual import Ripples
@@ -29,9 +29,6 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import long_run_variance
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MOST_BINS = 2**16
 """Largest number of travel bins. It is a numerical resolution."""

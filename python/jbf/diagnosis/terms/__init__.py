@@ -16,6 +16,7 @@ effects.
 
 from __future__ import annotations
 
+from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
@@ -24,8 +25,6 @@ from jbf.diagnosis.terms.proposal import Model, Proposal, Term, is_accepted
 from jbf.diagnosis.terms.quantiser import quantiser
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
 from jbf.estimation.campaign import Campaign
-
-Names = tuple[str, ...]
 
 COMPETING: tuple[Term, ...] = (errors_of_motion, random_effect)
 """Terms that compete with the effects.

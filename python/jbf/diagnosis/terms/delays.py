@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy import special
 
 from jbf.diagnosis.policy import Policy
@@ -29,8 +28,6 @@ from jbf.estimation.solution import Solution
 from jbf.estimation.uncertain_samples import samples_near_jumps
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
-
-Array = npt.NDArray[np.float64]
 
 LATE, DRIFT = "late_channel", "drifting_clock"
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
@@ -20,8 +20,6 @@ from jbf.estimation.held_out_comparison import predictive_deviance
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-
-Array = npt.NDArray[np.float64]
 
 
 def errors_of_motion(model: Model) -> Proposal | None:

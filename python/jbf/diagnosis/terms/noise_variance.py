@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import optimize, special
 
+from jbf.arrays import Array
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term, refitted
 from jbf.estimation.campaign import Campaign
@@ -23,7 +24,6 @@ from jbf.estimation.solution import Solution
 from jbf.estimation.variance import robust_size
 from jbf.records.findings.finding import Finding
 
-Array = npt.NDArray[np.float64]
 Weights = Sequence[Array]
 
 ERROR = 1.9

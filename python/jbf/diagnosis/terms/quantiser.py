@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy import optimize
 
+from jbf.arrays import Array
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.terms.proposal import Model, Proposal, independent_fraction, price_of_term
 from jbf.estimation.campaign import Campaign
@@ -20,8 +20,6 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.quantisation import quantisation_bias, zero_offset
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
-
-Array = npt.NDArray[np.float64]
 
 EVALUATIONS = 8
 """Number of evaluations of each fit to corrected readings. It limits the effort only."""

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.diagnosis.terms.proposal import (
     Model,
     Proposal,
@@ -26,8 +26,6 @@ from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import robust_size
 from jbf.records.findings.finding import Finding
-
-Array = npt.NDArray[np.float64]
 
 
 def random_effect(model: Model) -> Proposal | None:

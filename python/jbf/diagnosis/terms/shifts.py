@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Names
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delay_scan import scan_delays
@@ -21,8 +21,6 @@ from jbf.estimation.solution import Solution
 from jbf.estimation.transients import without_transients
 from jbf.models.delayed_reading import DELAY, TAU
 
-Array = npt.NDArray[np.float64]
-Names = tuple[str, ...]
 EVALUATIONS = 12
 """Number of steps of a fit to shifted runs. It limits the effort only."""
 STEPS = 10

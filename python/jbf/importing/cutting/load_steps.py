@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.importing.cutting.piece import Cut
 from jbf.importing.spool import Recording, Stream
-
-Array = npt.NDArray[np.float64]
 
 LOADS = ("load_n", "load_n_m", "pressure_pa")
 _PARTS = 20

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError
 from jbf.importing.spool import Recording, Stream
 from jbf.importing.targets import MOTION
-
-Array = npt.NDArray[np.float64]
 
 _SPEEDS = tuple(key for key in MOTION if "velocity" in key or "speed" in key)
 _PLACES = tuple(key for key in MOTION if key not in _SPEEDS)

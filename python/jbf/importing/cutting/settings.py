@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.records.toml_file import number, refuse_unknown
 
-Array = npt.NDArray[np.float64]
 RELATIONS: dict[str, Callable[[Array, float], Any]] = {
     "==": operator.eq,
     "!=": operator.ne,

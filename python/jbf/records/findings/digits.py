@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
 
 FEWEST_GAPS = 8
 """Smallest number of gaps between levels for the estimate of a quantisation step."""

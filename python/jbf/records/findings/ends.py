@@ -9,13 +9,10 @@ from the adjacent samples exceeds the largest deviation within the record by the
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.findings.finding import Finding
 from jbf.records.lagrange import weights_at_zero
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MAX_OUTLIERS = 3
 """Largest number of outliers at each end."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
@@ -17,9 +17,6 @@ from jbf.records.findings.saturation import find_saturation
 from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.findings.steps import find_steps
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

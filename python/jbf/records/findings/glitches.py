@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.counts import count_of
 from jbf.records.findings.ends import end_outliers, ends_finding
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MIN_SIGMAS = 8.0
 """Minimum deviation from both neighbours, to the same side, in local standard deviations."""

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.smooth_force import is_without_noise
 from jbf.records.findings.steps import step_of
 from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 LEAST = 5
 """Smallest length of a held sequence, if quantisation does not make longer sequences likely."""

@@ -10,13 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.digits import last_digit, resolution
 from jbf.records.findings.polygon import polygon, polygon_rms, refined
 from jbf.records.findings.steps import step_of
-
-Array = npt.NDArray[np.float64]
 
 WINDOW = 40
 """Window length of the first search, samples."""

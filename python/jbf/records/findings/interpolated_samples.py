@@ -9,14 +9,11 @@ by chance; the expected number is estimated from the samples close to the line.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.findings.digits import resolution
 from jbf.records.findings.interpolated import Native, is_smooth
 from jbf.records.motion.roughness import quantum_of
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 LEAST_SHARE, LEAST = 0.02, 10
 """Smallest share and smallest number of interpolated samples for a finding."""

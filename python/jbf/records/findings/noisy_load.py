@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
-
-Array = npt.NDArray[np.float64]
 
 LEAST_SAMPLES = 100
 CHANCE = 1e-4

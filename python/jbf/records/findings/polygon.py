@@ -7,10 +7,9 @@ period and the phase are searched.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
 
 USUAL_HALVINGS, MOST_HALVINGS = 9, 14
 """Number of halvings of the search range: default, and largest.

@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Mask
 from jbf.records.checks import SLOW
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import step_of
 from jbf.records.run import Run
-
-Mask = npt.NDArray[np.bool_]
 
 MIN_COUNTS = 2.0
 """Minimum travel from one row to the next for a drive to be in motion, in encoder counts."""

@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 FREE_ORIGIN_COLUMNS = ("time_s", "angle_rad", "position_m")
 """Columns whose origin may differ."""

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.steps import step_of
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MIN_READINGS = 5
 """Minimum number of identical readings at an extreme value of a noisy channel."""

@@ -11,9 +11,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.interpolated import Native
-
-Array = npt.NDArray[np.float64]
 
 LEAST_ROWS = 40
 LEAST_SHARE = 0.02

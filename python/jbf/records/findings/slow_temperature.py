@@ -7,13 +7,11 @@ temperature of the body, without the jumps of its readings.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 HELD = 0.5
 """Minimum share of repeated samples for a held reading."""

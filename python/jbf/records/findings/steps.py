@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MOST_LEVELS = 0.2
 """Largest ratio of levels to samples for quantised readings."""

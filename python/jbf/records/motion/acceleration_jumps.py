@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.reading_errors import JERK
 from jbf.records.motion.readings import ForceReadings, ReadingErrors, Readings
-
-Array = npt.NDArray[np.float64]
 
 JUMP_SIGMA = 2.0
 """Number of standard errors within which the instant of a jump is uncertain."""

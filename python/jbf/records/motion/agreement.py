@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
 
 CONTRADICTION = 10.0
 """Minimum difference of path and speed for a contradiction, in standard errors."""

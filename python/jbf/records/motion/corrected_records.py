@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-import numpy.typing as npt
-
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.derived_speed import centred_speed, derived_speed
@@ -24,9 +22,6 @@ from jbf.records.motion.speed_zero import speed_zero
 from jbf.records.motion.stale_positions import replace_stale_positions
 from jbf.records.motion.units import wrong_unit
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 NOT_AS_RECORDED = (
     "units",

@@ -8,12 +8,10 @@ difference, in 90 % of the samples in motion.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import noise_of, quantum_of, step_of
-
-Array = npt.NDArray[np.float64]
 
 SPANS = range(1, 13)
 """Numbers of samples over which differences are tried."""

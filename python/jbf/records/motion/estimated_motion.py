@@ -17,9 +17,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf._core import MotionErrorChain
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.records.checks import frozen
 from jbf.records.findings.finding import Finding
@@ -46,9 +46,6 @@ from jbf.records.motion.rests import (
 from jbf.records.motion.roughness import local_noise, noise_of, quantum_of
 from jbf.records.motion.smoothing import Smoothed, smooth
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 SIGN_SIGMA = 4.0
 """Smallest ratio of a speed to its standard error at which its sign is known."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
 
 LONGEST_RESIDUAL, USUAL_RESIDUAL = 10.0, 1.0
 """Largest deviation from an even clock, and limit of its 90 % quantile, in samples."""

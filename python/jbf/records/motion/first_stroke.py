@@ -8,9 +8,8 @@ not a direction of sliding.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
 
 MAX_NOISE_SHARE = 1e-3
 """Largest first displacement of noise, relative to the longest one between two reversals."""

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.counts import count_of
 from jbf.records.findings.ends import end_outliers, ends_finding
 from jbf.records.findings.finding import Finding
 from jbf.records.lagrange import weights_at_zero
 from jbf.records.motion.position import Position
 from jbf.records.motion.roughness import step_of
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 MIN_SIGMAS = 8.0
 """Minimum deviation of a sample, in local standard deviations."""

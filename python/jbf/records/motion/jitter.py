@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import noise_of, step_of
-
-Array = npt.NDArray[np.float64]
 
 LEAST = 0.01
 """Smallest jitter that is reported, as a share of a sampling interval."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.ratio import metres_per_unit
 from jbf.records.run import Run
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

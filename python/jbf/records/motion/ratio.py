@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.window_comparisons import ALL_HALF_WIDTHS, Compared, window_comparisons
-
-Array = npt.NDArray[np.float64]
 
 FAST = 0.3
 """Share of the top speed above which the ratio is evaluated."""

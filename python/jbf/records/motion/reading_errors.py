@@ -16,12 +16,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.roughness import noise_of
-
-Array = npt.NDArray[np.float64]
 
 JERK, SNAP = 3, 4
 """Order of the derivative of the position that is noise."""

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf._core import MotionReadings, SmoothedMotion
+from jbf.arrays import Array
 
-Array = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
 
 SPAN = 5

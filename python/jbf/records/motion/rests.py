@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.motion.roughness import noise_of
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 REST_SAMPLES = 3
 """Minimum number of consecutive zero speeds for a rest; fewer are a zero crossing."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from jbf.arrays import Array
 
 MIN_NOISE_RATIO = 3.0
 """Minimum ratio of local to usual noise for a local estimate of heteroscedastic noise."""

@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.readings import AT_REST, ReadingErrors
 from jbf.records.motion.smoothing import Smoothed
-
-Array = npt.NDArray[np.float64]
 
 MAX_VARIANCE_RATIO = 10.0
 """Ratio of the largest variance to the smallest one up to which runs have the same errors."""

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.acceleration_jumps import NO_JUMPS, Jumps
 from jbf.records.motion.reading_errors import JERK, LONG_PASSES, estimate_errors, starting_errors
 from jbf.records.motion.readings import AT_REST, ForceReadings, ReadingErrors, Readings
-
-Array = npt.NDArray[np.float64]
 
 SHORTEST = 4
 """Number of samples below which the motion is a parabola through them."""

@@ -7,12 +7,10 @@ from the path, over the same windows over which the recorded speed is averaged.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.window_comparisons import Compared, window_comparisons
-
-Array = npt.NDArray[np.float64]
 
 MIN_DELAY_ERRORS = 6.0
 """Minimum delay of the speed, in standard errors."""

@@ -7,14 +7,11 @@ correction, a rest would appear as creep, and its friction as friction of slidin
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array, Mask
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.rests import STILL_SAMPLES, STILL_STEPS
 from jbf.records.motion.roughness import step_of
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 LEAST = 3 * STILL_SAMPLES
 """Minimum number of samples at standstill for an estimate of the offset."""

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.position import Position
 from jbf.records.motion.roughness import step_of
-
-Array = npt.NDArray[np.float64]
 
 MIN_READINGS = 3
 """Minimum number of consecutive repeated readings; with jitter, two may be nearly simultaneous."""

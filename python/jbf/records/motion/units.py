@@ -6,14 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.position import Position
 from jbf.records.motion.ratio import MIN_DEVIATION, factor_between, slope_near
 from jbf.records.quantities import BEARING, Quantities
-
-Array = npt.NDArray[np.float64]
 
 FACTOR_TOLERANCE = 0.06
 """Relative tolerance within which a ratio matches the factor of a unit."""

@@ -10,11 +10,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.arrays import Array
 from jbf.records.motion.roughness import step_of
-
-Array = npt.NDArray[np.float64]
 
 HALF_WIDTHS = (2, 4, 8)
 """Half widths of the windows, in samples, for a fine and for a coarse path."""

@@ -314,7 +314,7 @@ def test_effect_is_confirmed_even_if_one_run_is_needed_to_determine_the_law() ->
     confirmed = better = 0
     for law, own, noise in linear(11, 60):
         found = confirmation(law, own, effect(0.13, own, noise))
-        confirmed += found.confirms(WEAK, np.inf, DEFAULT)
+        confirmed += found.confirms(WEAK, DEFAULT)
         better += found.after_n < found.before_n
     assert confirmed >= 54
     # The held-out RMS does not decrease in many of the cases.
@@ -325,7 +325,7 @@ def test_effect_in_one_run_only_is_not_confirmed() -> None:
     refused = 0
     for law, own, noise in linear(12, 60):
         force = [e + 0.5 * (i == 0) * o for i, (e, o) in enumerate(zip(noise, own, strict=True))]
-        refused += not confirmation(law, own, force).confirms(WEAK, np.inf, DEFAULT)
+        refused += not confirmation(law, own, force).confirms(WEAK, DEFAULT)
     assert refused >= 57
 
 

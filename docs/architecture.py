@@ -39,7 +39,7 @@ LAYERS: list[list[tuple[str, str]]] = [
         ("importing", "foreign files, a map in;\nruns, rig, ledger out"),
     ],
     [("records", "files in; runs, rig,\nestimated motion out")],
-    [("_core", "crates/jbf-py, jbf-predict, jbf-batch, jbf-core: the physics, once, in Rust")],
+    [("_core", "crates/jbf-{py, predict, batch, catalogue, core}: the physics, once, in Rust")],
 ]
 
 

@@ -50,6 +50,14 @@ def test_false_alarm_rate_is_shared_and_minimum_size_grows_with_samples() -> Non
     assert Level.in_white_noise(policy, 0, 1000.0, 4.0).chance == 0.02
 
 
+def test_effect_must_explain_the_share_of_the_motion_errors_up_to_a_limit() -> None:
+    for motion_share, share in ((0.0, 0.0009), (0.002, 0.002), (0.01, 0.01), (0.6, 0.015)):
+        least = DEFAULT.least_effect_share(motion_share)
+        level = Level.in_white_noise(DEFAULT, 8, 1e4, 4.0, least)
+        assert level.min_share == pytest.approx(share)
+        assert level.min_gain == pytest.approx(share * 1e4)
+
+
 def test_threshold_is_the_largest_of_chance_level_margin_and_minimum_size() -> None:
     level = Level(0.02, 8, 1e-4, artefact_margin=5.0, min_gain=3.0)
     assert level.critical == pytest.approx(stats.chi2.isf(1e-4, 1))

@@ -68,7 +68,7 @@ class Candidates:
         self.earlier = earlier
         self.policy, self.progress = policy, progress
         self.reached: Reached = Reached() if earlier is None else earlier.reached
-        self._excluded: dict[str, str | None] = {} if earlier is None else earlier._excluded
+        self._excluded: dict[str, str] = {} if earlier is None else earlier._excluded
         self._fitted: dict[frozenset[str], Fitted] = {}
         self._level: Level | None = None
         self._levels: dict[frozenset[str], tuple[Level, RichestResidual | None]] = {}
@@ -78,7 +78,7 @@ class Candidates:
     def with_campaign(self, campaign: Campaign, effects: Iterable[str] | None = None) -> Candidates:
         """Return the candidates of a changed campaign; their fits start from these solutions.
 
-        `effects` are those of the model with which the changed campaign was estimated.
+        Changed errors of the motion are not estimated again with the model `effects`.
         """
         self.earlier = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
@@ -107,11 +107,11 @@ class Candidates:
         pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
         return {e.name: self.campaign.missing_requirement(e) for e in pages} | self._excluded
 
-    def testable(self, present: Sequence[str]) -> tuple[str, ...]:
-        """Those of the effects `present` that these runs can test; the others are excluded.
+    def exclude_untestable(self, present: Sequence[str]) -> tuple[str, ...]:
+        """Return the effects of `present` that these runs can test; exclude the others for good.
 
         An effect that was added may not be testable with errors of the motion estimated again. It
-        is not tried again, since these errors may be small without it.
+        is not tried in a later round, since these errors may be small without it.
         """
         self._excluded.update(
             {name: self.not_tried[name] for name in present if name in self.not_tried}

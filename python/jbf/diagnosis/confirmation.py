@@ -95,19 +95,22 @@ class Confirmation:
     def units_confirm(self, level: Level) -> bool:
         """Whether the held-out errors decrease significantly over the independent units.
 
-        The mean square must also decrease by the share of an effect of the minimum effect size.
+        The p-value must be below `level.chance`, and the held-out mean square must decrease by at
+        least the share `level.min_share`.
         """
         most = (1.0 - level.min_share) * self.before_n**2
         return self.chance < level.chance and self.after_n**2 < most
 
     def confirms(self, evidence: float, policy: Policy) -> bool:
-        """Whether the held-out runs confirm a candidate with this evidence (twice the log gain).
+        """Whether the held-out runs confirm a candidate.
 
-        The held-out predictive density confirms any evidence. The errors alone are not informative
-        where the other runs cannot determine a parameter, for example where one run dominates the
-        estimate of the parameters of the law. Where the evidence is strong, any gain in mean square
-        suffices as well, or a better prediction of most of the runs. A candidate that increases the
-        held-out RMS by more than `policy.held_out.max_rms_ratio` is never confirmed.
+        `evidence` is its gain in twice the log likelihood beyond the threshold. A predictive
+        density that increases by a sufficient share of the gain confirms any candidate. The errors
+        alone are not informative where the other runs cannot determine a parameter, for example
+        where one run dominates the estimate of the parameters of the law. Where the evidence is
+        strong, any gain in mean square suffices as well, or a better prediction of most of the
+        runs. A candidate that increases the held-out RMS by more than
+        `policy.held_out.max_rms_ratio` is never confirmed.
         """
         if self.after_n / max(self.before_n, 1e-300) > policy.held_out.max_rms_ratio:
             return False

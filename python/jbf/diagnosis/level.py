@@ -1,5 +1,9 @@
 """Acceptance threshold for the gain of an effect, from the false-alarm rate of a campaign.
 
+The false-alarm rate is the fraction of campaigns without a missing effect in which any candidate is
+named. A gain must exceed the larger of two limits: that of white noise plus the artefact margin,
+and that of the residual of the campaign, which contains its artefacts.
+
 The Bonferroni correction for the number of candidates gives the significance level of a single
 gain. If the residual of the campaign gives large gains more often, this level is reduced until the
 rate is attained. For this purpose the signs of the residual are reversed block by block (wild

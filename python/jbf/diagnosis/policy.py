@@ -104,7 +104,10 @@ class Policy:
         return min(motion_share, self.motion.max_structure_share)
 
     def least_effect_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that an effect that does not smooth must explain."""
+        """Minimum share of the mean square that any effect must explain.
+
+        It is the share of the motion's errors in the variance, up to `motion.max_effect_share`.
+        """
         return min(motion_share, self.motion.max_effect_share)
 
     def with_values(self, values: Mapping[str, Any]) -> Policy:

@@ -36,8 +36,8 @@ class Selection:
     )
     weak_evidence: float = documented(
         60.0,
-        "evidence up to which held-out runs must confirm a share of the gain; above it, a "
-        "candidate that fits but does not predict counts as residual structure",
+        "evidence up to which only the predictive density of held-out runs can confirm a "
+        "candidate; above it, a candidate that they do not confirm counts as residual structure",
         "chosen on simulated campaigns; noise alone does not exceed it",
     )
     max_refused_rms_ratio: float = documented(
@@ -70,8 +70,8 @@ class HeldOut:
 
     min_gain_share: float = documented(
         0.5,
-        "minimum increase of the log predictive density of held-out runs, as a share of the "
-        "candidate's gain, where its evidence is weak",
+        "increase of the log predictive density of held-out runs, as a share of the candidate's "
+        "gain, above which they confirm the candidate",
         "in a linear model the expected share is (Z - 1) / (Z + 1) for a gain Z + 1",
     )
     min_better_share: float = documented(

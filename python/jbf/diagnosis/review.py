@@ -28,13 +28,13 @@ from jbf.models.catalogue import can_be_removed
 from jbf.records.rig import Rig
 
 OFFSET = "sensor_offset"
-TERMS = (OFFSET, "inertia", "gravity")
-"""Effects that are not friction and that no law can represent."""
+MACHINE_TERMS = (OFFSET, "inertia", "gravity")
+"""Machine terms of a drive: effects that are not friction and that no law can represent."""
 
 
 def machine_of(rig: Rig, present: Iterable[str]) -> Names:
     """Machine terms among the effects `present` in a model; empty for a rig without a drive."""
-    return () if rig.drive is None else tuple(name for name in present if name in TERMS)
+    return () if rig.drive is None else tuple(name for name in present if name in MACHINE_TERMS)
 
 
 def start_model(candidates: Candidates) -> Names:
@@ -44,7 +44,8 @@ def start_model(candidates: Candidates) -> Names:
     of all terms may end at a weight of zero.
     """
     present: Names = ()
-    for name in machine_of(candidates.campaign.rig, [n for n in TERMS if n in candidates.names]):
+    testable = [name for name in MACHINE_TERMS if name in candidates.names]
+    for name in machine_of(candidates.campaign.rig, testable):
         near = candidates.converge(present)
         present = (*present, name)
         candidates.look(present, near)

@@ -127,7 +127,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             candidates = candidates.with_campaign(settled)
             present = still_needed(candidates, present)
             visited = {frozenset(present)}
-        testable = candidates.testable(present)
+        testable = candidates.exclude_untestable(present)
         if testable != present:
             present, visited = testable, {frozenset(testable)}
         candidates.reached.candidates, candidates.reached.present = candidates, present

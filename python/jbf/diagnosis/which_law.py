@@ -17,7 +17,7 @@ import numpy as np
 from jbf.arrays import Array
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.review import TERMS, start_model, with_errors_of_motion
+from jbf.diagnosis.review import MACHINE_TERMS, start_model, with_errors_of_motion
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_parts
@@ -184,7 +184,7 @@ def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldO
     """Held-out errors of a law with the machine terms, within its share of the budget."""
     limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
     candidates = Candidates(without_transients(limited, law, clock), law, clock, policy)
-    terms = tuple(effect for effect in TERMS if effect in candidates.names)
+    terms = tuple(effect for effect in MACHINE_TERMS if effect in candidates.names)
     return held_out_errors(candidates, terms)
 
 
@@ -229,21 +229,22 @@ def compared(
 
     `entries` has the number of parameters and the held-out errors of each model, by name. The
     errors whitened for the errors of the motion determine the ranking, since an elastic law would
-    smooth acceleration errors next to a reversal. Models whose mean squares differ by less than
-    `least_share`, relative to the best, are tied.
+    smooth acceleration errors next to a reversal. A model is tied with the best if its
+    mean square is larger by less than chance, than `laws.same_ratio` of the policy allows, or than
+    `least_share` of the best.
     """
     plain, decisive = (
         np.array([np.concatenate(rows) ** 2 for rows in kind])
         for kind in zip(*((h.errors, h.white) for _, h in entries.values()), strict=True)
     )
     shared = np.isfinite(plain).all(axis=0)
+    names = list(entries)
 
     def law_tried(i: int, rms: float, tied: bool) -> LawTried:
         """Result of the i-th model."""
         parameters, held_out = entries[names[i]]
         return LawTried(names[i], parameters, rms, tied, held_out.static_below_kinetic)
 
-    names = list(entries)
     if not shared.any():
         return [law_tried(i, float(np.sqrt(np.nanmean(e))), True) for i, e in enumerate(plain)]
     rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
@@ -271,7 +272,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         The time limit is reached.
     """
     policy, campaign = candidates.policy, candidates.campaign
-    kept = tuple(effect for effect in effects if effect in TERMS)
+    kept = tuple(effect for effect in effects if effect in MACHINE_TERMS)
     most = len(candidates.fitted(effects).problem.open)
     entries = {"": (most, held_out_errors(candidates, effects))}
     for name in followed(campaign, clock)[0]:

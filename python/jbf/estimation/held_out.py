@@ -27,10 +27,11 @@ EVALUATIONS = 12
 SHORT = 3.0
 """Length of a step per parameter, in standard deviations, that is accepted without a search.
 
-Noise alone causes steps of this length. A search continues from the end of a longer step."""
+Noise alone causes steps of this length if runs are left out. A search continues from the end of a
+longer step.
+"""
 STRAIGHT = 0.05
-"""Deviation from linearity, as a fraction of a change, up to which a step is accepted. Within it a
-step is accepted without further iterations."""
+"""Deviation from linearity, as a fraction of a change, up to which one step suffices."""
 NOTHING = 0.01
 """Fraction of the residual below which the error of a prediction is negligible."""
 
@@ -115,11 +116,10 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
-    rows = [
-        solution.samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
-        for i in range(count)
-    ]
-    factors = [(*triangular(r, j), len(r)) for r, j in rows]
+    factors = []
+    for i in range(count):  # one run at a time: a Jacobian may be computed on demand
+        r, j = solution.samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+        factors.append((*triangular(r, j), len(r)))
     squares = _squares(solution)
     parts = []
     for group in _groups(problem.campaign):

@@ -38,9 +38,9 @@ TRUSTED = 0.25
 
 @dataclass(frozen=True)
 class SearchResult:
-    """End of a search: its variables, or the parameter values; and why the search ended.
+    """End of a search: values, whether they are a minimum, and why the search ended.
 
-    `converged` states whether they are a minimum.
+    The values are the variables of the search (`minimise`) or those of the parameters (`search`).
     """
 
     values: Array

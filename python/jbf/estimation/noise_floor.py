@@ -115,7 +115,10 @@ def _detrended(values: Array) -> Array:
 
 
 def _repeat_squares(prepared: Sequence[Prepared], samples: Samples) -> list[tuple[float, int]]:
-    """Noise variance of each run, N^2, from its motion one period later; samples used."""
+    """Noise variance, N^2, of each run with a periodic motion, and the number of samples used.
+
+    The variance is that of the differences between readings one period apart.
+    """
     squares, settings = [], samples.settings
     for p, counted in zip(prepared, samples.counted, strict=True):
         shift = period_samples(p.motion.velocity, settings.periods)

@@ -44,7 +44,11 @@ def quantisation_bias(step_n: float, noise_rms: float, force_n: Array) -> Array:
 
 
 def bias_rms(step_n: float, noise_rms: float) -> float:
-    """RMS of the quantisation bias over the force, N, for a noise before the converter, N."""
+    """RMS of the quantisation bias over the force, N.
+
+    `step_n` is the quantisation step and `noise_rms` the standard deviation of the noise before the
+    converter, N.
+    """
     ratio = math.pi * noise_rms / step_n
     return step_n / math.pi * math.exp(-2.0 * ratio**2) / math.sqrt(2.0)
 

@@ -108,7 +108,8 @@ class Samples:
     def with_factors(self, factors: Sequence[Array], *, of_level: bool) -> Samples:
         """Return a copy with the weights multiplied by factors, one (n,) array per run.
 
-        With `of_level`, they describe the noise level of each sample, otherwise heavy-tailed noise.
+        With `of_level`, a factor is proportional to 1 / (standard deviation of the noise) and also
+        multiplies `level`. Otherwise it is a robust weight for heavy-tailed noise.
         """
         weight = tuple(w * f for w, f in zip(self.weight, factors, strict=True))
         level = self.level or tuple(np.ones(len(w)) for w in weight)

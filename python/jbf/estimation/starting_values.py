@@ -186,7 +186,7 @@ def _largest_n(campaign: Campaign) -> float:
 
 
 def _run_times(campaign: Campaign) -> Starts:
-    """Starting values of a time constant, s: 1/3 and 1/10 of the duration of a typical run."""
+    """Starting values of a time constant, s: 0.3 and 0.1 of the median duration of a run."""
     median_s = float(np.median([p.run.duration_s for p in campaign.prepared]))
     return (0.3 * median_s, 0.1 * median_s)
 
@@ -210,7 +210,10 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign, Parameter], Starts]] = {
     "cell_cubic": lambda c, _: (CELL_ERROR / _largest_n(c) ** 2,),
     "lateness": _down_to_sample,
 }
-"""Rules that use the runs; if the result is empty, the catalogue values apply."""
+"""Rules that use the runs, for laws in newtons; those of `OF_ANY_LAW` apply to every law.
+
+If the result is empty, the catalogue values apply.
+"""
 OF_ANY_LAW = ("reference_temperature", "cell_play", "cell_cubic", "lateness")
 """Rules that apply to every law, because they concern quantities of the records."""
 PITCHES = ("pitch", "ripple_pitch")

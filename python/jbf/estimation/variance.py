@@ -65,8 +65,8 @@ def score_inflation(
 ) -> float:
     """Ratio, at least one, of the variance of a score to its variance in white noise.
 
-    The directions are the derivatives of the score. They and the innovations have any scale, and
-    one array a run, shape (n,).
+    The directions are derivatives of the prediction. They and the innovations have one array per
+    run, shape (n,), and any scale.
     """
     directions, square = _scaled(directions)
     white = _mean_square(innovations)

@@ -112,8 +112,8 @@ def test_effect_whose_parameter_differs_between_runs_is_a_confounder() -> None:
     assert confounders(candidates, (OFFSET, DRIFT)) == (DRIFT,)
 
 
-def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None:
-    """The gain in units of the noise variance; the factor is varied around its present value."""
+def test_effect_is_named_if_its_gain_exceeds_a_multiple_of_the_disagreement() -> None:
+    """The factor is set just below and just above the ratio of this campaign."""
     assert DEFAULT.selection.confounder_ratio == 20.0
     candidates = _candidates(lambda i, t: (0.3 + 0.1 * (-1.0) ** i) * t)
     full, rest = candidates.converge((DRIFT,)), candidates.converge(())

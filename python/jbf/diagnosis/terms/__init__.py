@@ -53,9 +53,10 @@ def best_term_update(
 ) -> tuple[Campaign, Names] | None:
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
-    Some terms compete with an accepted effect, whose evidence is `min_evidence`; it is None if no
-    effect is accepted. A random effect is removed if it is no longer significant. Returns the
-    changed campaign and the effects that remain in the model; None if no term changes.
+    `min_evidence` is the evidence of an accepted effect: only the terms `COMPETING` are tried, and
+    they must have more. If it is None, all terms are tried, and a random effect that is no longer
+    significant is removed. Returns the changed campaign and the effects that remain in the model;
+    None if no term changes.
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING

@@ -118,7 +118,7 @@ def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0
     than its standard error. All runs have equal weight, so that with between-run variance the
     largest deviation does not dominate. Delays and the quantisation bias are those of the fit to
     all runs. A term that changes the covariance of the errors must not decrease the density of
-    held-out runs.
+    held-out runs; a change that is not a number counts as a decrease.
     """
     if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False

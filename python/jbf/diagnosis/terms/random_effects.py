@@ -65,8 +65,8 @@ def without_random_effect(model: Model) -> Campaign | None:
     if gains[name] >= 0.0:
         return None
     samples = replace(campaign.samples, between=between.without(name))
-    first_words = FINDINGS[name][1].partition("{")[0]
-    findings = tuple(f for f in campaign.more_findings if not f.words.startswith(first_words))
+    text_before_value = FINDINGS[name][1].partition("{")[0]
+    findings = tuple(f for f in campaign.more_findings if not f.words.startswith(text_before_value))
     return replace(campaign, samples=samples, more_findings=findings)
 
 
@@ -196,4 +196,7 @@ FINDINGS = {
         "temperature",
     ),
 }
-"""Kind and text of the finding on each random effect; no two texts begin with the same words."""
+"""Kind and text of the finding on each random effect.
+
+`without_random_effect` finds it by the text before the first value.
+"""

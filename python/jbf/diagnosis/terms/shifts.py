@@ -98,7 +98,11 @@ def fitted_to_shifted(
     start_values: dict[str, float],
     near: Solution,
 ) -> Shifted:
-    """Shift the runs of a model and fit its law with effects to them by a few steps."""
+    """Shift the runs of a model and fit its law with effects to them by a few steps.
+
+    The shifts of the result are relative to the runs of `problem`. `start_values` are by name;
+    `near` has the noise.
+    """
     again = Problem(moved(problem, delays_s, drift), problem.law, problem.clock, effects)
     start = np.array([start_values[name] for name in again.names])
     samples = again.samples_at(start)
@@ -108,7 +112,7 @@ def fitted_to_shifted(
 
 
 def fit_delays_by_run(start: Shifted) -> Shifted:
-    """Estimate the delay of each run jointly with the model of shifted or unshifted runs.
+    """Estimate the delay of each run jointly with the model; its runs may already be shifted.
 
     Returns `start` if the fit does not improve, or if a delay is not plausible.
     """
@@ -136,7 +140,7 @@ def fit_delays_by_run(start: Shifted) -> Shifted:
         after = fitted_to_shifted(start.problem, change_s, 0.0, effects, values, now.solution)
         return replace(after, delays_s=delays_s, drift=start.drift)
 
-    return _iterated(start, advance)
+    return _iterate(start, advance)
 
 
 def fit_clock_drift(start: Shifted) -> Shifted:
@@ -160,11 +164,11 @@ def fit_clock_drift(start: Shifted) -> Shifted:
         values, effects = now.problem.values_by_name(now.solution.values), now.problem.effects
         return fitted_to_shifted(start.problem, delays_s, drift, effects, values, now.solution)
 
-    return _iterated(start, advance)
+    return _iterate(start, advance)
 
 
-def _iterated(start: Shifted, advance: Callable[[Shifted], Shifted | None]) -> Shifted:
-    """Repeat a joint Gauss-Newton step, with white noise and then with coloured noise.
+def _iterate(start: Shifted, advance: Callable[[Shifted], Shifted | None]) -> Shifted:
+    """Repeat a joint Gauss-Newton step until it converges in white, then in coloured noise.
 
     Returns `start` if the residual does not decrease, or if a step returns None.
     """

@@ -152,7 +152,7 @@ def _weight(plant: Plant, at: Course) -> float:
 
 
 def _push(plant: Plant, at: Course) -> float:
-    """Force that the drive must overcome in both directions, N m or N."""
+    """Weight and hidden forces that do not depend on the direction of motion, N m or N."""
     return _weight(plant, at) + plant.hidden.push(at)
 
 
@@ -167,9 +167,10 @@ def _held(plant: Plant, at: Course) -> float:
 
 
 def _sliding(plant: Plant, at: Course, u: float, sign: float) -> tuple[float, float]:
-    """Force without viscous friction, and viscous slope, of the accelerated mass.
+    """Force on the mass without viscous friction (N m or N), and the slope of this friction.
 
-    All friction except the part proportional to speed is contained in the force.
+    `u` is the force of the drive, and `sign` the direction of motion. The force contains all
+    friction except the part proportional to speed.
     """
     hidden, d, v = plant.hidden, plant.viscous, at.velocity
     factor = hidden.factor(at)

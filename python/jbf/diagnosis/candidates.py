@@ -108,7 +108,7 @@ class Candidates:
         return {e.name: self.campaign.missing_requirement(e) for e in pages} | self._excluded
 
     def exclude_untestable(self, present: Sequence[str]) -> tuple[str, ...]:
-        """Return the effects of `present` that these runs can test; exclude the others for good.
+        """Return the effects of `present` that these runs can test; exclude the others permanently.
 
         An effect that was added may not be testable with errors of the motion estimated again. It
         is not tried in a later round, since these errors may be small without it.

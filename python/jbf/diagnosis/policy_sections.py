@@ -266,8 +266,7 @@ class Motion:
         0.015,
         "share of the mean square that an effect must explain where the errors of the motion have "
         "a larger share of the variance",
-        "largest share that a false effect explained in simulated servo drives (seeds 4938 to "
-        "5012)",
+        "false effects explained less in most simulated servo drives (seeds 4938 to 5012)",
     )
     min_noise_ratio: float = documented(
         1.1,

@@ -7,6 +7,7 @@ to triangular factors.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import overload
 
 import numpy as np
 
@@ -46,7 +47,13 @@ class OnDemand(Sequence[Array]):
     def __len__(self) -> int:
         return self._count
 
-    def __getitem__(self, index: int) -> Array:  # type: ignore[override]
+    @overload
+    def __getitem__(self, index: int) -> Array: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Array]: ...
+    def __getitem__(self, index: int | slice) -> Array | list[Array]:
+        if isinstance(index, slice):
+            return [self._make(i) for i in range(self._count)[index]]
         return self._make(range(self._count)[index])
 
 

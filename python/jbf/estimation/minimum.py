@@ -38,19 +38,19 @@ For a law without a film, these are searched to convergence, which is then inexp
 of a wrong law have many local minima."""
 NESTED_EVALUATIONS = 30
 """Evaluations of a fit of the law without its effects."""
-TUNING = 1.345
+HUBER_TUNING = 1.345
 """Huber's constant: limit of the influence of a residual, in robust standard deviations. The
 efficiency is 95 % of least squares for Gaussian noise (Huber 1964)."""
-FREEDOM = 3.0
-"""Degrees of freedom of Student's t."""
+STUDENT_FREEDOM = 3.0
+"""Degrees of freedom of Student's t distribution for robust weights."""
 ROBUST_ROUNDS = 4
 """Number of iterations of weights and fits."""
-ELSEWHERE = 0.05
+MIN_CHANGE = 0.05
 """Difference of two models' predictions above which their estimates differ. The difference is a
 fraction of the residual's RMS."""
-BETTER = 0.97
+BETTER_RMS = 0.97
 """Ratio of held-out RMS values below which one of them counts as smaller."""
-NO_WORSE, SHARPER = 1.02, 0.8
+EQUAL_RMS, BETTER_MEDIAN = 1.02, 0.8
 """Accepted ratio of held-out RMS values, if the ratio of the medians is at most the second
 value."""
 
@@ -172,7 +172,7 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
     for weights in (huber, student):
         robust = _robust(problem, plain, weights)
         changes = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
-        if plain.samples.rms(changes) < ELSEWHERE * plain.rms:
+        if plain.samples.rms(changes) < MIN_CHANGE * plain.rms:
             continue
         errors = np.concatenate(held_out_by_run(problem, best)) if errors is None else errors
         robust_errors = np.concatenate(held_out_by_run(problem, robust))
@@ -189,10 +189,10 @@ def _better(robust_errors: Array, errors: Array) -> bool:
     """
     rms = float(np.sqrt(np.mean(robust_errors**2) / max(float(np.mean(errors**2)), 1e-300)))
     median = float(np.median(np.abs(robust_errors)) / max(float(np.median(np.abs(errors))), 1e-300))
-    return rms < BETTER or (rms < NO_WORSE and median < SHARPER)
+    return rms < BETTER_RMS or (rms < EQUAL_RMS and median < BETTER_MEDIAN)
 
 
-def huber(residual: Array, tuning: float = TUNING) -> Array:
+def huber(residual: Array, tuning: float = HUBER_TUNING) -> Array:
     """Square roots of the Huber weights of absolute residuals given in standard deviations."""
     return np.asarray(np.sqrt(np.minimum(1.0, tuning / np.maximum(residual, 1e-300))))
 
@@ -202,7 +202,7 @@ def student(residual: Array) -> Array:
 
     Outliers have almost no weight (Lange et al. 1989).
     """
-    return np.asarray(np.sqrt((FREEDOM + 1.0) / (FREEDOM + residual**2)))
+    return np.asarray(np.sqrt((STUDENT_FREEDOM + 1.0) / (STUDENT_FREEDOM + residual**2)))
 
 
 def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]) -> Solution:

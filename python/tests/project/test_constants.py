@@ -26,7 +26,8 @@ NUMERICAL = {
         diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND
         diagnosis.power.strength: DRAWS
         estimation.delay_scan: LEAST_STEPS CLIPPED BLURRED
-        estimation.minimum: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
+        estimation.minimum: HUBER_TUNING STUDENT_FREEDOM MIN_CHANGE BETTER_RMS EQUAL_RMS
+        estimation.minimum: BETTER_MEDIAN
         estimation.standard_errors: BENT
         estimation.trajectory_fit: REST_SHARE
     """,

@@ -42,10 +42,8 @@ from jbf.models.vocabulary import Clock
 Progress = Callable[[str, int, int], None]
 
 RANKING_EVALUATIONS = 6
-"""Largest number of model evaluations of the approximate fit by which a candidate is ranked.
-
-Only competitive candidates are fitted further. It limits the computing time only.
-"""
+"""Number of evaluations of the approximate fit by which a candidate is ranked. It limits the
+computing time only: competitive candidates are fitted further."""
 
 
 class Candidates:
@@ -113,9 +111,7 @@ class Candidates:
         An effect that was added may not be testable with errors of the motion estimated again. It
         is not tried in a later round, since these errors may be small without it.
         """
-        self._excluded.update(
-            {name: self.not_tried[name] for name in present if name in self.not_tried}
-        )
+        self._excluded |= {n: self.not_tried[n] for n in present if n in self.not_tried}
         return tuple(name for name in present if name not in self._excluded)
 
     def addable(self, present: Collection[str]) -> list[str]:
@@ -189,8 +185,8 @@ class Candidates:
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
-            searched = self.fitted(present).problem.thinned.campaign.samples
-            self.residual = residual = RichestResidual.of(directions, searched)
+            tested_on = self.fitted(present).problem.score_tested.campaign.samples
+            self.residual = residual = RichestResidual.of(directions, tested_on)
             if residual is not None:
                 directions = [replace(d, share=max(d.share, residual.share)) for d in directions]
             level = calibrated(self._white_noise_level(present), directions, residual)
@@ -238,18 +234,19 @@ class Candidates:
 
     def _approach(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
         """Create the unfinished search for the fit of these effects, with its starting values."""
-        seeds: list[Mapping[str, float]] = [{}]
+        seeds: list[Sequence[Mapping[str, float]]] = [[{}]]
         many = near is not None and many_peaks(near.effects)
         earlier = None if self.earlier is None else self.earlier._fitted.get(frozenset(effects))
         if earlier is not None and earlier.state in ("ranked", "converged"):
             # Start from the solution before the sample weights changed.
-            seeds = [earlier.named_values()]
+            seeds = [[earlier.named_values()]]
         elif near is not None:
             near_values = self.fitted(near.effects).problem.values_by_name(near.values)
             # Law parameters that compensated for the missing effect are poor starting values; with
             # many peaks, those of the other effects are poor as well.
-            kept = {} if many else {n: v for n, v in near_values.items() if "." in n}
-            seeds, fitted.started_from = [near_values, kept], frozenset(near.effects)
+            without_law = {n: v for n, v in near_values.items() if "." in n}
+            other = self.fitted(near.effects).default_starts if many else [without_law]
+            seeds, fitted.started_from = [[near_values], other], frozenset(near.effects)
         if near is not None and set(near.effects) < set(effects):
             fitted.max_square = self._required_square(near)
         return Approach(fitted.problem, seeds, each=many, stepped=fitted.stepped)
@@ -278,6 +275,8 @@ class Candidates:
         near: Solution,
     ) -> None:
         """Apply a function to each set of effects in parallel threads and report progress."""
+        if many_peaks(near.effects):
+            _ = self.fitted(near.effects).default_starts  # for all threads
         # The largest problems first.
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         done = in_parallel(work, order, fits_at_once(self.campaign, self.law, self.names))
@@ -313,7 +312,7 @@ class Candidates:
         highest = search_peaks(fitted.problem, near, NEAR_MINIMUM)
         if len(frozenset(effects)) > 1 and many_peaks(effects):
             # Repeat the fit from default values, without the earlier solutions.
-            fresh = approach(fitted.problem, [{}], RANKING_EVALUATIONS)
+            fresh = approach(fitted.problem, [fitted.default_starts], RANKING_EVALUATIONS)
             if likelihood_gain(fresh, highest) > -self.policy.search.rank_margin:
                 fresh = settle(fitted.problem, fresh, least_gain=NEAR_MINIMUM)
                 fresh = search_peaks(fitted.problem, fresh, NEAR_MINIMUM)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from jbf.arrays import Array
 from jbf.diagnosis.directions import Directions
-from jbf.estimation.approach import Approach
+from jbf.estimation.approach import Approach, default_starts
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
 from jbf.estimation.held_out import HeldOutPart
@@ -74,6 +75,11 @@ class Fitted:
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
     motion_proposal: Proposal | None = None
     motion_estimated: bool = False
+
+    @cached_property
+    def default_starts(self) -> list[dict[str, float]]:
+        """Promising starting points of the model without the solutions of other models, by name."""
+        return default_starts(self.problem)
 
     def current_solution(self) -> Solution:
         """Return the present solution of the fit, converged or not."""

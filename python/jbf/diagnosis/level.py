@@ -159,38 +159,37 @@ def score_test(
 
     At each of the values `starts`, the effects `added` have no influence on the model `problem`;
     `near` is the solution of the smaller model. The starting values with the largest predicted gain
-    are used. With more samples than a search needs, the Jacobian is computed from selected runs
-    (`Problem.searched`).
+    are used. If the Jacobian of the smaller model does not fit into the memory limit, that of the
+    larger one is computed from selected runs (`Problem.searched`).
 
     Returns the predicted gain (`score_gain`), the score directions of the added effects, and the
     parameter values after one step from the selected starting values.
     """
-    thinned = problem.thinned
+    complete = near.lines is not None
+    tested = problem if complete else problem.thinned
     # Samples next to jumps, which the smaller model excludes, would favour any effect.
-    samples = near.samples if thinned is problem else near.samples.only(problem.searched)
-    is_added = np.array([thinned.names[i].split(".")[0] in added for i in thinned.open], dtype=bool)
+    samples = near.samples if complete else near.samples.only(problem.searched)
+    is_added = np.array([tested.names[i].split(".")[0] in added for i in tested.open], dtype=bool)
     # At the null, the derivatives with respect to the other parameters are unchanged.
-    reuse_rows = thinned is problem and near.free == np.count_nonzero(~is_added)
+    reuse_rows = complete and near.free == np.count_nonzero(~is_added)
     best: tuple[float, Array, Array, Array] | None = None
     for start in starts:
         if reuse_rows:
-            columns = [
-                i for i, added_here in zip(thinned.open, is_added, strict=True) if added_here
-            ]
+            columns = [i for i, added_here in zip(tested.open, is_added, strict=True) if added_here]
             r, rest = _rows(near)
-            _, added_columns = samples.stacked(*thinned.linearise(start, by=columns), near.noise)
+            _, added_columns = samples.stacked(*tested.linearise(start, by=columns), near.noise)
             j = np.empty((len(r), len(is_added)))
             j[:, is_added], j[:, ~is_added] = added_columns, rest
         else:
-            r, j = samples.stacked(*thinned.linearise(start), near.noise)
+            r, j = samples.stacked(*tested.linearise(start), near.noise)
         gain = promised_gain(*triangular(r, j), len(r))
-        if thinned is not problem:
+        if not complete:
             gain = score_gain(problem, start, near)
         if best is None or gain > best[0]:
             best = gain, r, j, start
     assert best is not None
     gain, r, j, start = best
-    stepped = thinned.decode(thinned.encode(start) + least_squares(j, r), start)
+    stepped = tested.decode(tested.encode(start) + least_squares(j, r), start)
     directions = Directions.of(r, j[:, is_added], j[:, ~is_added], samples, effective_share(near))
     return gain, directions, stepped
 

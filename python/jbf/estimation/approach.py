@@ -19,6 +19,7 @@ from jbf.estimation.levenberg_marquardt import SearchResult
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.estimation.search import Visited, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import Parameter, find_effect
@@ -32,7 +33,7 @@ KEPT = 12
 """Largest number of starting points kept after each combination of starting values."""
 LOOKED = 3
 """Number of evaluations of a first, short search (`Approach.look`). It starts from the best
-starting point of the first seed."""
+starting point of the first group of seeds."""
 
 
 def many_peaks(effects: Iterable[str]) -> bool:
@@ -48,9 +49,10 @@ class Approach:
     problem
         The model.
     seeds
-        Known values by name; the other parameters have their starting values.
+        Groups of known values by name, with the same names within a group; the other parameters
+        have their starting values.
     each
-        Continue from the best starting point of each seed instead of the best of all.
+        Continue from the best starting point of each group instead of the best of all.
     stepped
         One additional starting point: the end of a Gauss-Newton step from a smaller model. The
         starting values are those of a strong effect. The minimum of a weak effect may be separated
@@ -60,7 +62,7 @@ class Approach:
     def __init__(
         self,
         problem: Problem,
-        seeds: Sequence[Mapping[str, float]],
+        seeds: Sequence[Sequence[Mapping[str, float]]],
         *,
         each: bool = False,
         stepped: Array | None = None,
@@ -75,7 +77,7 @@ class Approach:
 
     @cached_property
     def _nearest(self) -> Array:
-        """Starting point nearest to a smaller model: a step from it, or from the first seed."""
+        """Starting point nearest to a smaller model: a step from it, or from the first group."""
         return min([*self._likely(0), *self._stepped], key=self._square)
 
     @cached_property
@@ -87,7 +89,7 @@ class Approach:
         return sorted(itertools.chain(*groups, self._stepped), key=self._square)
 
     def _likely(self, k: int) -> list[Array]:
-        """Promising starting points of seed `k`.
+        """Promising starting points of group `k` of the seeds.
 
         The starting values of the law, then those of each effect, are combined with the points kept
         so far; later effects are at their null. If more than `KEPT` points result, those with the
@@ -95,16 +97,16 @@ class Approach:
         """
         if k in self._kept:
             return self._kept[k]
-        names, pages = self.problem.names, list(self.problem.parameters.values())
-        known = {**self._seeds[k], **self.problem.fixed}
-        first = [
-            known.get(name, null_or_start(page)) for name, page in zip(names, pages, strict=True)
+        names, pages = self.problem.names, self.problem.parameters
+        group = [{**seed, **self.problem.fixed} for seed in self._seeds[k]]
+        kept = [
+            np.array([seed.get(name, null_or_start(page)) for name, page in pages.items()])
+            for seed in group
         ]
-        kept = [np.array(first)]
-        unknown = (i for i, name in enumerate(names) if name not in known)
-        for _, group in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
-            indices = list(group)
-            choices = list(itertools.product(*(pages[i].starts for i in indices)))
+        unknown = (i for i, name in enumerate(names) if name not in group[0])
+        for _, owned in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
+            indices = list(owned)
+            choices = list(itertools.product(*(pages[names[i]].starts for i in indices)))
             kept = [_replaced(point, indices, choice) for point in kept for choice in choices]
             if len(kept) > KEPT:
                 kept = sorted(kept, key=self._fastest_square)[:KEPT]
@@ -120,17 +122,19 @@ class Approach:
 
     def _fastest_square(self, values: Array) -> float:
         """Sum of squares of weighted residuals of the run with the highest speed, N^2."""
-        samples = self.thinned.campaign.samples.only(self._fastest)
-        return samples.square(self.thinned.residuals(values, self._fastest))
+        run, samples = self._fastest
+        return samples.square(self.thinned.residuals(values, [run]))
 
     @cached_property
-    def _fastest(self) -> list[int]:
-        """Index of the run with the highest speed, as a selection of one run."""
-        runs = self.thinned.campaign.prepared
-        return [int(np.argmax([float(np.max(np.abs(p.motion.velocity))) for p in runs]))]
+    def _fastest(self) -> tuple[int, Samples]:
+        """Index of the run with the highest speed, and its samples."""
+        campaign = self.thinned.campaign
+        speeds = [float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared]
+        run = int(np.argmax(speeds))
+        return run, campaign.samples.only([run])
 
     def look(self, near: Solution) -> tuple[Solution, float]:
-        """Search by a few steps from the first seed, and compare with a smaller model's solution.
+        """Search by a few steps from the first group, and compare with a smaller model's solution.
 
         The first result is a solution with the noise of `near`. The second one is the gain in twice
         the log likelihood over `near` that the linear model predicts at the best visited point.
@@ -213,9 +217,14 @@ class Approach:
         return problem.solution(values, samples, noise, end.converged, end.message, lines)
 
 
+def default_starts(problem: Problem) -> list[dict[str, float]]:
+    """Promising starting points of a model from its starting values alone, by name."""
+    return [problem.values_by_name(values) for values in Approach(problem, [[{}]]).starts]
+
+
 def approach(
     problem: Problem,
-    seeds: Sequence[Mapping[str, float]],
+    seeds: Sequence[Sequence[Mapping[str, float]]],
     evaluations: int,
     *,
     followed: int = FOLLOWED,

@@ -266,7 +266,11 @@ def fit_with_delay(
 
 def near_solution(problem: Problem, solution: Solution) -> Solution:
     """Residuals and Jacobian of a problem at the parameter values of another solution."""
-    return problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
+    values, lines = solution.values, None
+    if problem.fits_in_memory:
+        lines = problem.linearise(values)
+    samples = problem.samples_at(values, None if lines is None else lines[0])
+    return problem.solution(values, samples, WHITE, lines=lines)
 
 
 def fit_with_errors(
@@ -277,10 +281,10 @@ def fit_with_errors(
     if delayed:
         slopes = tuple(delay_slope(problem, values, p) for p in prepared)
         motion = replace(motion, by_delay=slopes)
-    plain, weights = problem.samples_at(values), []
+    plain, weights = problem.samples_at(values, near.residuals), []
     tuning = problem.campaign.settings.motion.huber_sigma
     for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
         sd = motion.noise * np.sqrt(1.0 + motion.variance_ratio(i))
         weights.append(weight * huber(np.abs(residual) / sd, tuning))
     samples = replace(plain, weight=tuple(weights), motion=motion)
-    return search_solution(problem, samples, values, WHITE, EVALUATIONS, NEAR_MINIMUM)
+    return search_solution(problem, samples, values, WHITE, EVALUATIONS, NEAR_MINIMUM, near.lines)

@@ -98,7 +98,9 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
     by_delay = None if before is None else before.by_delay
     motion = replace(estimate_motion_errors(problem, near), by_delay=by_delay)
     samples = replace(solution.samples, motion=motion)
-    return search_solution(problem, samples, solution.values, solution.noise, EVALUATIONS)
+    return search_solution(
+        problem, samples, solution.values, solution.noise, EVALUATIONS, lines=near.lines
+    )
 
 
 def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

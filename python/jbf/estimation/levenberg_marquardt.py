@@ -5,6 +5,9 @@ the prediction, damping d, and the largest norms D of the columns of J so far. T
 solved by an active-set method. A variable at its bound does not shorten the step of the others,
 unlike in `dogbox` of scipy, which may then end far from a minimum.
 
+The Jacobian is computed again only if the last step decreased the sum of squares by clearly more
+or less than it predicted, since residuals alone are several times cheaper.
+
 References
 ----------
 Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05, Technical University of Denmark.
@@ -14,12 +17,13 @@ Stark & Parker, Bounded-variable least-squares, Computational Statistics 10 (199
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import optimize
 
 from jbf.arrays import Array
+from jbf.estimation.least_squares import triangular
 
 INITIAL_DAMPING = 1e-4
 """Damping of the first step, relative to the squares of the columns of the Jacobian."""
@@ -34,14 +38,17 @@ ACCEPTED = 1e-4
 """Smallest ratio of actual to predicted decrease of an accepted step."""
 TRUSTED = 0.25
 """Ratio of actual to predicted decrease above which a small decrease ends the search."""
+ACCURATE = 0.25
+"""Largest deviation from one of the ratio of actual to predicted decrease, with which a Jacobian
+is kept for the next step."""
+RESIDUALS_COST = 0.2
+"""Computing cost of residuals relative to that of residuals and Jacobian."""
+SMALL_DECREASE = "the sum of squares decreases by less than the tolerance"
 
 
 @dataclass(frozen=True)
 class SearchResult:
-    """End of a search: values, whether they are a minimum, and why the search ended.
-
-    The values are the variables of the search (`minimise`) or those of the parameters (`search`).
-    """
+    """End of a search: values, whether they are a minimum, and why the search ended."""
 
     values: Array
     converged: bool
@@ -55,6 +62,7 @@ def minimise(
     longest: Array,
     evaluations: int,
     tolerance: float,
+    residuals: Callable[[Array], Array] | None = None,
 ) -> SearchResult:
     """Minimise the sum of squares of residuals within bounds.
 
@@ -70,10 +78,14 @@ def minimise(
     longest
         Largest change of each variable in one step; it may be infinite.
     evaluations
-        Maximum number of evaluations.
+        Maximum number of calls of `evaluate`; one of `residuals` counts as `RESIDUALS_COST`.
     tolerance
         Relative decrease of the sum of squares, predicted or achieved by a step, below which the
         search has converged.
+    residuals
+        Function that returns the residuals without the Jacobian. If it is given, it tests each
+        step, and the Jacobian is kept while it predicts the decrease well (`ACCURATE`). `evaluate`
+        is called for the result.
 
     Returns
     -------
@@ -83,37 +95,53 @@ def minimise(
     low, high = bounds
     x = start
     residual, jacobian = evaluate(x)
+    current = True  # the Jacobian is that at x
     norms = np.zeros(len(x))
-    damping, increase = INITIAL_DAMPING, FIRST_INCREASE
-    for _ in range(evaluations - 1):
-        norms = np.maximum(norms, np.linalg.norm(jacobian, axis=0))
-        square = float(residual @ residual)
+    damping, increase, spent = INITIAL_DAMPING, FIRST_INCREASE, 1.0
+    end = SearchResult(x, False, "the maximum number of evaluations is reached")
+    while spent < evaluations:
+        reduced, factor = triangular(residual, jacobian)
+        norms = np.maximum(norms, np.linalg.norm(factor, axis=0))
+        square = float(reduced @ reduced)
         within = np.maximum(low - x, -longest), np.minimum(high - x, longest)
-        step = _bounded_step(residual, jacobian, damping, norms, within)
-        linear = residual - jacobian @ step
+        step = _bounded_step(reduced, factor, damping, norms, within)
+        linear = reduced - factor @ step
         predicted = square - float(linear @ linear)
-        if predicted <= tolerance * square:
-            return SearchResult(x, True, "the sum of squares decreases by less than the tolerance")
-        trial = np.clip(x + step, low, high)
-        new_residual, new_jacobian = evaluate(trial)
-        decrease = square - float(new_residual @ new_residual)
-        ratio = decrease / predicted if np.isfinite(decrease) else -1.0
+        if predicted <= tolerance * square and current:
+            return SearchResult(x, True, SMALL_DECREASE)
+        ratio = -1.0
+        if predicted > tolerance * square:
+            trial = np.clip(x + step, low, high)
+            if residuals is None:
+                new_residual, new_jacobian = evaluate(trial)
+                spent += 1.0
+            else:
+                new_residual, new_jacobian = residuals(trial), jacobian
+                spent += RESIDUALS_COST
+            decrease = square - float(new_residual @ new_residual)
+            ratio = decrease / predicted if np.isfinite(decrease) else -1.0
         if ratio > ACCEPTED:
             x, residual, jacobian = trial, new_residual, new_jacobian
             damping *= max(LEAST_FACTOR, 1.0 - (2.0 * ratio - 1.0) ** 3)
             increase = FIRST_INCREASE
+            current = residuals is None
             if decrease <= tolerance * square and ratio > TRUSTED:
-                return SearchResult(
-                    x, True, "the sum of squares decreases by less than the tolerance"
-                )
-        else:
+                end = SearchResult(x, True, SMALL_DECREASE)
+                break
+        elif current:
             damping *= increase
             increase *= 2.0
             if damping > MAX_DAMPING:
                 return SearchResult(
                     x, np.isfinite(decrease), "no step decreases the sum of squares"
                 )
-    return SearchResult(x, False, "the maximum number of evaluations is reached")
+        if not current and abs(ratio - 1.0) > ACCURATE:
+            residual, jacobian = evaluate(x)
+            current = True
+            spent += 1.0
+    if not current:
+        evaluate(x)
+    return replace(end, values=x)
 
 
 def _bounded_step(

@@ -14,10 +14,10 @@ import numpy as np
 from jbf.arrays import Array
 from jbf.estimation.least_squares import unexplained_square
 from jbf.estimation.noise import WHITE, Noise, estimate_noise
-from jbf.estimation.problem import Lines, Problem
+from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples, common_samples
 from jbf.estimation.settings import DEFAULT, NoiseSettings
-from jbf.estimation.solution import Solution
+from jbf.estimation.solution import Lines, Solution
 from jbf.estimation.variance import clipped_square, robust_size, significant_inflation
 
 
@@ -187,7 +187,9 @@ def noise_at(
     """
     selection = problem.searched
     samples = samples if len(selection) == len(samples.runs) else samples.only(selection)
-    residuals = problem.residuals(values, selection) if lines is None else lines[0]
+    residuals = (
+        problem.residuals(values, selection) if lines is None else [lines[0][i] for i in selection]
+    )
     residuals = samples.without_deviations(residuals, WHITE)
     masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
     most_n, settings = problem.campaign.most_noise_n, samples.settings.noise

@@ -20,12 +20,11 @@ import numpy as np
 from jbf.arrays import Array
 from jbf.estimation.approach import TRIAL_EVALUATIONS, approach
 from jbf.estimation.held_out import held_out_by_run
-from jbf.estimation.levenberg_marquardt import SearchResult
 from jbf.estimation.likelihood import noise_at
-from jbf.estimation.noise import WHITE
+from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import NEAR_MINIMUM, other_peaks, search, search_solution
+from jbf.estimation.search import NEAR_MINIMUM, SearchEnd, other_peaks, search, search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
 
@@ -73,33 +72,54 @@ def settle(
         `NEAR_MINIMUM`, and is continued if the noise is white and `least_gain` smaller.
     """
     samples = problem.campaign.samples if samples is None else samples
-    end, noise = SearchResult(near.values, near.converged, near.message), near.noise
+    end = SearchEnd(near.values, near.converged, near.message, near.lines)
+    noise = near.noise
+
+    def continued(noise: Noise, least_gain: float) -> SearchEnd:
+        """Search from the present end."""
+        return search(
+            problem,
+            samples,
+            end.values,
+            noise,
+            MAX_EVALUATIONS,
+            least_gain=least_gain,
+            lines=end.lines,
+        )
+
     if not near.converged:
-        end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS, least_gain=NEAR_MINIMUM)
-        noise = noise_at(problem, samples, end.values)
+        end = continued(WHITE, NEAR_MINIMUM)
+        noise = noise_at(problem, samples, end.values, end.lines)
     if near.samples is not samples:
         # Search first with full weights, then with reduced weights of samples next to jumps.
-        weighted = problem.samples_at(end.values)
-        unconverged = problem.solution(end.values, weighted, noise, False, end.message)
+        weighted = problem.samples_at(end.values, None if end.lines is None else end.lines[0])
+        unconverged = problem.solution(end.values, weighted, noise, False, end.message, end.lines)
         return settle(problem, unconverged, weighted, least_gain)
     if not noise.white:
-        coloured = search(
-            problem, samples, end.values, noise, MAX_EVALUATIONS, least_gain=least_gain
-        )
-        most = samples.settings.noise.max_rms_ratio**2 * problem.square(end.values, samples)
-        if problem.square(coloured.values, samples) <= most:
+        coloured = continued(noise, least_gain)
+        most = samples.settings.noise.max_rms_ratio**2 * samples.square(_residuals(problem, end))
+        if samples.square(_residuals(problem, coloured)) <= most:
             end = coloured
-            noise = noise_at(problem, samples, end.values)
+            noise = noise_at(problem, samples, end.values, end.lines)
         else:
             noise = WHITE
     if noise.white and not near.converged and least_gain < NEAR_MINIMUM:
-        end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS, least_gain=least_gain)
-    return problem.solution(problem.wrapped(end.values), samples, noise, end.converged, end.message)
+        end = continued(WHITE, least_gain)
+    return problem.solution(
+        problem.wrapped(end.values), samples, noise, end.converged, end.message, end.lines
+    )
+
+
+def _residuals(problem: Problem, end: SearchEnd) -> Sequence[Array]:
+    """Residuals at the end of a search, N, one array per run."""
+    return problem.residuals(end.values) if end.lines is None else end.lines[0]
 
 
 def polish(problem: Problem, near: Solution) -> Solution:
     """Continue a fit to the smallest tolerance of a search, with the same samples and noise."""
-    exact = search_solution(problem, near.samples, near.values, near.noise, MAX_EVALUATIONS)
+    exact = search_solution(
+        problem, near.samples, near.values, near.noise, MAX_EVALUATIONS, lines=near.lines
+    )
     return replace(exact, systematic=near.systematic)
 
 
@@ -134,7 +154,13 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     """Minimise the sum of squares from all starting points to convergence, with other maxima."""
     # Without a film, each starting point is searched to convergence.
     steps = TRIAL_EVALUATIONS if find_law(problem.law).has_film else MAX_EVALUATIONS
-    near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT, steps=steps)
+    near = approach(
+        problem,
+        [[seed] for seed in seeds],
+        MAX_EVALUATIONS,
+        followed=FOLLOWED_IN_A_FIT,
+        steps=steps,
+    )
     return search_peaks(problem, settle(problem, near))
 
 
@@ -150,7 +176,7 @@ def not_above_nested(problem: Problem, solution: Solution) -> Solution:
     law = Problem(problem.campaign, problem.law, problem.clock, (), fixed, problem.bounds)
     if not law.open:
         return solution
-    nested = law.values_by_name(settle(law, approach(law, [{}], NESTED_EVALUATIONS)).values)
+    nested = law.values_by_name(settle(law, approach(law, [[{}]], NESTED_EVALUATIONS)).values)
     start = solution.values.copy()
     for i, (name, page) in enumerate(problem.parameters.items()):
         if name not in problem.fixed:
@@ -216,5 +242,7 @@ def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]
         factors = [weights(np.abs(r) / scale) for r in solution.residuals]
         weight = tuple(w * f for w, f in zip(start.samples.weight, factors, strict=True))
         samples = replace(start.samples, weight=weight)
-        solution = search_solution(problem, samples, solution.values, WHITE, MAX_EVALUATIONS)
+        solution = search_solution(
+            problem, samples, solution.values, WHITE, MAX_EVALUATIONS, lines=solution.lines
+        )
     return solution

@@ -21,7 +21,7 @@ from jbf.estimation.least_squares import MOST_HELD, OnDemand, memory_groups, sel
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
-from jbf.estimation.solution import Solution
+from jbf.estimation.solution import Lines, Solution
 from jbf.estimation.starting_values import with_starts
 from jbf.estimation.uncertain_samples import (
     active_effects,
@@ -43,9 +43,6 @@ from jbf.models.chain import chain
 from jbf.models.vocabulary import Clock
 from jbf.records.arguments import by_name
 from jbf.records.toml_file import number
-
-Lines = tuple[list[Array], list[Array]]
-"""Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
 
 SLOPES_COST = 2.0
 """Computing cost of a prediction with derivatives, relative to one without derivatives."""
@@ -204,6 +201,11 @@ class Problem:
         if len(selection) == len(self.campaign.prepared):
             return self
         return self.with_campaign(self.campaign.only(selection))
+
+    @property
+    def score_tested(self) -> Problem:
+        """Problem of the score tests of further effects: `thinned` if the memory is limited."""
+        return self if self.fits_in_memory else self.thinned
 
     def with_campaign(self, campaign: Campaign) -> Problem:
         """Return the problem for another campaign, with the same bounds and starting values."""

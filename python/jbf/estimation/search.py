@@ -9,16 +9,17 @@ has several maxima.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from jbf.arrays import Array
+from jbf.estimation.least_squares import triangular
 from jbf.estimation.levenberg_marquardt import SearchResult, minimise
 from jbf.estimation.noise import Noise
-from jbf.estimation.problem import Lines, Problem
+from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.solution import Solution
+from jbf.estimation.solution import Lines, Solution
 
 NEAR = 0.3
 """Largest relative difference of each parameter between two points compared for equivalence."""
@@ -111,6 +112,13 @@ class Visited:
         return problem.square(values, samples)
 
 
+@dataclass(frozen=True)
+class SearchEnd(SearchResult):
+    """End of a search, with residuals and Jacobian of all samples there if they are available."""
+
+    lines: Lines | None = None
+
+
 class _Joined(Exception):
     """Signal that a search has reached a point that another search has visited."""
 
@@ -123,7 +131,8 @@ def search(
     evaluations: int,
     visited: Visited | None = None,
     least_gain: float = 0.0,
-) -> SearchResult:
+    lines: Lines | None = None,
+) -> SearchEnd:
     """Minimise the squared innovations from one starting point.
 
     Parameters
@@ -137,41 +146,62 @@ def search(
         Increase of twice the log likelihood, predicted or achieved by a step, below which the
         search ends. The tolerance of the relative decrease of the sum of squares is the larger of
         `ENDED` and `least_gain` divided by the number of samples.
+    lines
+        Residuals and Jacobian of all samples at the starting point, if they are known.
     """
     memory = Visited() if visited is None else visited
     path: list[SearchPoint] = []
 
     def evaluate(x: Array) -> tuple[Array, Array]:
-        """Innovations and Jacobian at the variables `x`, evaluated at most once."""
+        """Innovations and Jacobian at the variables `x`; in reduced rows if memory is limited."""
         values = problem.decode(x, start)
-        point = memory.at(values)
+        point, known = memory.at(values), None
+        if problem.fits_in_memory:
+            known = memory.lines_at(values) or (None if path else lines)
+            known = known or problem.linearise(values)
+            r, j = samples.stacked(*known, noise)
+            count = len(r)
+        elif point is None:
+            r, j, count = problem.gauss_newton_rows(values, samples, noise)
+        else:
+            r, j, count = point.residual, point.jacobian, point.count
         if point is None:
-            stored = visited is not None and problem.fits_in_memory
-            lines = problem.linearise(values) if stored else None
-            r, j, count = problem.gauss_newton_rows(values, samples, noise, lines)
             problem.best.update(values, float(r @ r) / max(count, 1))
-            point = SearchPoint(problem.encode(values), values, values[problem.open], r, j, count)
-            if visited is None:
-                memory.points.clear()
-            memory.store(point, lines)
+            point = SearchPoint(
+                problem.encode(values), values, values[problem.open], *triangular(r, j), count
+            )
+            memory.store(point, known)
         if not path or path[-1] is not point:
             path.append(point)
             if visited is not None and any(_joins(point, other) for other in memory.ended):
                 raise _Joined
-        return point.residual, point.jacobian
+        return r, j
 
-    bounds = problem.encode(problem.lower), problem.encode(problem.upper)
+    def residuals(x: Array) -> Array:
+        """Innovations at the variables `x`."""
+        values = problem.decode(x, start)
+        r = samples.whitened(problem.residuals(values), noise)
+        problem.best.update(values, float(r @ r) / max(len(r), 1))
+        return r
+
     longest = np.where(problem.log[problem.open], LONGEST, np.inf)
-    tolerance = max(ENDED, least_gain / max(samples.count, 1))
     try:
-        end = minimise(evaluate, problem.encode(start), bounds, longest, evaluations, tolerance)
-        end = replace(end, values=problem.decode(end.values, start))
+        end = minimise(
+            evaluate,
+            problem.encode(start),
+            (problem.encode(problem.lower), problem.encode(problem.upper)),
+            longest,
+            evaluations,
+            max(ENDED, least_gain / max(samples.count, 1)),
+            residuals if problem.fits_in_memory else None,
+        )
     except _Joined:
         least = min(path, key=lambda point: point.square)
-        return SearchResult(least.values, False, "joined another search")
+        return SearchEnd(least.values, False, "joined another search")
     if visited is not None:
         memory.ended.append(path)
-    return end
+    values = problem.decode(end.values, start)
+    return SearchEnd(values, end.converged, end.message, memory.lines_at(values))
 
 
 def search_solution(
@@ -181,10 +211,13 @@ def search_solution(
     noise: Noise,
     evaluations: int,
     least_gain: float = 0.0,
+    lines: Lines | None = None,
 ) -> Solution:
     """Return the solution at the end of a search from one starting point (`search`)."""
-    end = search(problem, samples, start, noise, evaluations, least_gain=least_gain)
-    return problem.solution(problem.wrapped(end.values), samples, noise, end.converged, end.message)
+    end = search(problem, samples, start, noise, evaluations, least_gain=least_gain, lines=lines)
+    return problem.solution(
+        problem.wrapped(end.values), samples, noise, end.converged, end.message, end.lines
+    )
 
 
 def _key(values: Array) -> bytes:

@@ -10,6 +10,9 @@ from jbf.arrays import Array
 from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 
+Lines = tuple[list[Array], list[Array]]
+"""Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
+
 
 @dataclass(frozen=True, eq=False)
 class Solution:
@@ -56,6 +59,13 @@ class Solution:
     def free(self) -> int:
         """Number of fitted parameters."""
         return self.jacobian[0].shape[1] if self.jacobian else len(self.values)
+
+    @property
+    def lines(self) -> Lines | None:
+        """Residuals and Jacobian if they are held in memory, otherwise None."""
+        if isinstance(self.residuals, list) and isinstance(self.jacobian, list):
+            return self.residuals, self.jacobian
+        return None
 
     @cached_property
     def rms(self) -> float:

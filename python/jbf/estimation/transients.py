@@ -131,7 +131,7 @@ def without_transients(campaign: Campaign, law: str, clock: Clock) -> Campaign:
         return campaign
     check_film_rate(campaign, law, clock)
     problem = Problem(campaign, law, clock, ())
-    near = approach(problem, [{}], RANKING_EVALUATIONS)
+    near = approach(problem, [[{}]], RANKING_EVALUATIONS)
     return _without_unrecorded(problem, near.values, near.residuals)
 
 

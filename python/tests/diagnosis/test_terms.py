@@ -80,7 +80,7 @@ def test_gain_of_variances_is_invariant_to_units_with_an_effect_that_moves_jumps
         )
         law = {"F_s": 6.0 * factor}
         problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ("time_delay",), law)
-        near = approach(problem, [{}], 20)
+        near = approach(problem, [[{}]], 20)
         gains.append(proposed(variance_by_run(model_of(problem, settle(problem, near)))).gain)
     assert gains[1] == pytest.approx(gains[0], rel=1e-3)
 

@@ -92,6 +92,37 @@ def test_certified_values_of_the_nist_data_set_misra1a(start: tuple[float, float
     assert residual @ residual == pytest.approx(1.2455138894e-1, rel=1e-7)
 
 
+def test_residuals_alone_test_the_steps_while_the_jacobian_predicts_them() -> None:
+    """Fit of an exponential; a function of the residuals replaces most Jacobians."""
+    time = np.linspace(0.0, 3.0, 40)
+    data = 2.0 * np.exp(-1.3 * time) + 0.01 * np.sin(9.0 * time)
+    evaluated: list[Array] = []
+
+    def residuals(x: Array) -> Array:
+        return data - x[0] * np.exp(-x[1] * time)
+
+    def function(x: Array) -> tuple[Array, Array]:
+        evaluated.append(x)
+        decay = np.exp(-x[1] * time)
+        return residuals(x), np.column_stack([decay, -x[0] * time * decay])
+
+    box, start, longest = bounds([0.0, 0.0], [9.0, 9.0]), np.array([1.0, 0.3]), np.full(2, np.inf)
+    wanted = minimise(function, start, box, longest, 60, 1e-12)
+    most = len(evaluated)
+    evaluated.clear()
+    end = minimise(function, start, box, longest, 60, 1e-12, residuals)
+    assert end.converged
+    np.testing.assert_allclose(end.values, wanted.values, rtol=1e-6)
+    assert len(evaluated) < most
+    assert evaluated[-1] is end.values
+    # A search that ends early also ends at values that were evaluated.
+    evaluated.clear()
+    end = minimise(function, start, box, longest, 2, 1e-12, residuals)
+    assert not end.converged
+    assert evaluated[-1] is end.values
+    assert np.sum(residuals(end.values) ** 2) < np.sum(residuals(start) ** 2)
+
+
 def test_search_without_sufficient_evaluations_has_not_converged() -> None:
     box = bounds([-3.0, -3.0], [3.0, 3.0])
     end = minimise(rosenbrock, np.array([-1.2, 1.0]), box, np.full(2, np.inf), 3, 1e-12)

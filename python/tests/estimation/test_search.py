@@ -14,7 +14,7 @@ from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.minimum import not_above_nested, settle
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import Visited, search
+from jbf.estimation.search import ENDED, Visited, search
 from jbf.estimation.solution import Solution
 from linear_campaigns import mass
 from scipy import optimize
@@ -43,6 +43,16 @@ def test_search_for_a_linear_law_ends_at_its_linear_regression() -> None:
     assert problem.best.square == pytest.approx(square / samples.count)
 
 
+def test_search_returns_residuals_and_jacobian_at_its_end() -> None:
+    problem = linear()
+    start = values_of(problem, F_c=8.0, F_v=5.0)
+    for evaluations in (1, 2, 60):
+        end = search(problem, problem.campaign.samples, start, WHITE, evaluations)
+        assert end.lines is not None
+        for found, wanted in zip(end.lines, problem.linearise(end.values), strict=True):
+            np.testing.assert_array_equal(np.concatenate(found), np.concatenate(wanted))
+
+
 def test_second_search_stops_early_if_it_reaches_values_of_an_earlier_search() -> None:
     problem, visited = linear(), Visited()
     samples = problem.campaign.samples
@@ -50,7 +60,7 @@ def test_second_search_stops_early_if_it_reaches_values_of_an_earlier_search() -
     ends = [search(problem, samples, s, WHITE, 20, visited=visited) for s in (start, 1.7 * start)]
     assert [end.converged for end in ends] == [True, False]
     squares = [problem.square(end.values) for end in ends]
-    assert squares[1] >= squares[0]
+    assert squares[1] >= (1.0 - ENDED) * squares[0]
     assert visited.square(problem, samples, ends[0].values) == pytest.approx(squares[0])
 
 
@@ -61,17 +71,17 @@ def with_mass() -> Campaign:
 
 def bare_solution(campaign: Campaign, noise: Noise = WHITE) -> Solution:
     problem = Problem(campaign, "coulomb", "journal", ())
-    values = settle(problem, approach(problem, [{}], 8)).values
+    values = settle(problem, approach(problem, [[{}]], 8)).values
     return problem.solution(values, campaign.samples, noise)
 
 
 def test_approach_orders_starts_by_their_sum_of_squares() -> None:
     problem = Problem(with_mass(), "coulomb", "journal", ("inertia",))
-    seeds = [{"F_c": 5.0}, {"F_c": 50.0}]
+    seeds = [[{"F_c": 5.0}], [{"F_c": 50.0}]]
     every = Approach(problem, seeds).starts
     squares = [problem.square(start) for start in every]
     assert squares == sorted(squares)
-    assert len(every) == sum(len(problem.starts(seed)) for seed in seeds)
+    assert len(every) == sum(len(problem.starts(seed)) for [seed] in seeds)
     step = problem.starts({"F_c": 7.0})[0]
     some = Approach(problem, seeds, each=True, stepped=step).starts
     assert sorted(s[problem.names.index("F_c")] for s in some) == [5.0, 7.0, 50.0]
@@ -82,7 +92,7 @@ def test_starting_values_of_several_effects_are_combined_one_effect_after_anothe
     effects = ("sensor_offset", "presliding", "gravity")
     problem = Problem(Campaign.prepare(rig, runs[:3]), "stribeck", "journal", effects)
     every = problem.starts({})
-    kept = Approach(problem, [{}]).starts
+    kept = Approach(problem, [[{}]]).starts
     assert len(kept) == KEPT < 0.2 * len(every)
     squares = [problem.square(start) for start in every]
     best = [problem.square(start) for start in kept]
@@ -93,7 +103,7 @@ def test_starting_values_of_several_effects_are_combined_one_effect_after_anothe
 
 def test_expected_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
     near = bare_solution(with_mass())
-    path = Approach(Problem(with_mass(), "coulomb", "journal", ("inertia",)), [{}])
+    path = Approach(Problem(with_mass(), "coulomb", "journal", ("inertia",)), [[{}]])
     (seen, promised), found = path.look(near), path.follow(8)
     samples = near.samples
     before, *after = (samples.square(solution.residuals) for solution in (near, seen, found))
@@ -104,7 +114,7 @@ def test_expected_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
 
 def test_expected_gain_exceeds_the_gain_of_the_first_steps_if_the_law_is_nonlinear() -> None:
     near, samples = bare_solution(with_mass()), with_mass().samples
-    path = Approach(Problem(with_mass(), "stribeck", "journal", ()), [{"v_s": 0.02}])
+    path = Approach(Problem(with_mass(), "stribeck", "journal", ()), [[{"v_s": 0.02}]])
     seen, promised = path.look(near)
     gain = samples.count * np.log(samples.square(near.residuals) / samples.square(seen.residuals))
     assert promised > gain + 0.01
@@ -117,7 +127,7 @@ def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
     slow = Campaign.prepare(Rig(), runs)
     problem = Problem(slow, "coulomb", "journal", ("inertia",))
     near = [bare_solution(slow, noise) for noise in (WHITE, Noise(0.6, 0.95))]
-    looks = [Approach(problem, [{}]).look(solution) for solution in near]
+    looks = [Approach(problem, [[{}]]).look(solution) for solution in near]
     pairs = zip(looks, near, strict=True)
     plain, coloured = (likelihood_gain(seen, before) for (seen, _), before in pairs)
     assert coloured > 3.0 * max(plain, 1.0)
@@ -127,11 +137,11 @@ def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
 
 def test_search_stops_unconverged_if_it_cannot_reach_the_given_sum_of_squares() -> None:
     problem = Problem(with_mass(), "stribeck", "journal", ("inertia",))
-    best = Approach(problem, [{}]).follow(60)
+    best = Approach(problem, [[{}]]).follow(60)
     least = problem.square(best.values)
-    stopped = Approach(problem, [{}]).follow(60, max_square=0.9 * least)
+    stopped = Approach(problem, [[{}]]).follow(60, max_square=0.9 * least)
     assert (best.converged, stopped.converged) == (True, False)
-    start = Approach(problem, [{}]).starts[0]
+    start = Approach(problem, [[{}]]).starts[0]
     assert problem.square(start) > problem.square(stopped.values) > 0.9 * least
 
 
@@ -151,7 +161,7 @@ def test_approach_reaches_the_minimum_of_a_nonlinear_curve() -> None:
 
     starts = (np.log([6.0, 10.0, v_s, 20.0]) for v_s in (0.003, 0.01, 0.03, 0.1))
     least = 2.0 * min(optimize.least_squares(residual, start).cost for start in starts)
-    assert problem.square(approach(problem, [{}], 60).values) <= least * (1.0 + 1e-5)
+    assert problem.square(approach(problem, [[{}]], 60).values) <= least * (1.0 + 1e-5)
 
 
 def test_rms_of_a_fit_with_an_effect_does_not_exceed_that_of_the_base_law() -> None:

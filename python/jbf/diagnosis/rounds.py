@@ -127,9 +127,6 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             candidates = candidates.with_campaign(settled)
             present = still_needed(candidates, present)
             visited = {frozenset(present)}
-        testable = candidates.exclude_untestable(present)
-        if testable != present:
-            present, visited = testable, {frozenset(testable)}
         candidates.reached.candidates, candidates.reached.present = candidates, present
         # Test every candidate in addition to the present effects.
         trial_round = try_candidates(candidates, present, follow)
@@ -146,10 +143,14 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 # The errors of the motion, estimated without the effect, contain its force.
                 richer = (*present, trial_round.leader)
                 again = re_estimated_motion(candidates, richer)
-                if again is not None:
-                    candidates = candidates.with_campaign(again, richer)
-                    visited = {frozenset(present)}
-                extended = _with_leader(candidates, present, trial_round)
+                if again is not None and trial_round.leader not in again[1]:
+                    update = again
+                else:
+                    if again is not None:
+                        candidates = candidates.with_campaign(*again)
+                        present = candidates.exclude_untestable(present)
+                        visited = {frozenset(present)}
+                    extended = _with_leader(candidates, present, trial_round)
         # Where no effect is added, all terms are tried.
         ended = frozenset(extended) in visited
         if update is None and ended and follow == "promising" and may_update:
@@ -158,7 +159,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             updates += 1
             campaign, effects = update
             candidates = candidates.with_campaign(campaign, effects)
-            kept = tuple(n for n in present if n in effects)
+            kept = tuple(n for n in candidates.exclude_untestable(present) if n in effects)
             present, review_due = still_needed(candidates, kept), True
             visited, follow = {frozenset(present)}, "promising"
             # The model is tested again with the term: its step replaces the last one.

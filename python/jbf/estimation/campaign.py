@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from jbf.arrays import Array, Mask
+from jbf.arrays import Array, Mask, Names
 from jbf.errors import InputError
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
@@ -21,7 +21,7 @@ from jbf.estimation.quantisation import bias_rms, noise_before_converter
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
 from jbf.estimation.work import TimeLimit, Work
-from jbf.models.catalogue import Effect
+from jbf.models.catalogue import Effect, find_effect
 from jbf.models.driven import Driven
 from jbf.models.requirements import has_angle, has_path, has_position
 from jbf.models.user_effects import COLUMNS_OF_EVERY_RUN
@@ -212,6 +212,10 @@ class Campaign:
         if not temperatures or len(temperatures) < len(recorded):
             return None
         return float(min(map(np.min, temperatures))), float(max(map(np.max, temperatures)))
+
+    def testable(self, effects: Names) -> Names:
+        """Return the effects that the runs can show (`missing_requirement`)."""
+        return tuple(n for n in effects if self.missing_requirement(find_effect(n)) is None)
 
     def missing_requirement(self, effect: Effect) -> str | None:
         """Reason why the runs cannot show an effect; None if they meet all of its requirements."""

@@ -9,6 +9,7 @@ import jbf
 import numpy as np
 import pytest
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.terms import re_estimated_motion
 from jbf.diagnosis.which_law import held_out_errors
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.generalised_least_squares import with_motion_errors
@@ -122,11 +123,22 @@ def test_effects_that_distort_a_force_are_not_tried_if_the_acceleration_is_uncer
         assert "errors of the acceleration" in reasons[name]
 
 
-def test_effect_is_removed_if_the_acceleration_is_uncertain_with_it() -> None:
-    """A hum makes the force noisy, and errors of the acceleration small next to it."""
-    found = diagnosed(5011, ("hum",))
-    assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
-    assert "errors of the acceleration" in found.not_tried["sensor_nonlinearity"]
+def test_errors_of_the_motion_are_proposed_without_effects_that_they_make_untestable() -> None:
+    """A bent sensor follows errors of the acceleration at its peaks."""
+    candidates = Candidates(Campaign.prepare(*recorded(5011)), "coulomb", "journal")
+    for effects in (("inertia",), ("inertia", "sensor_nonlinearity")):
+        proposed = re_estimated_motion(candidates, effects)
+        assert proposed is not None
+        campaign, remaining = proposed
+        assert remaining == ("inertia",)
+        assert campaign.motion_share > 0.1 > candidates.campaign.motion_share
+
+
+def test_delay_of_an_abrupt_force_belongs_to_the_recording_instead_of_an_effect() -> None:
+    """The force was recorded 0.55 sampling intervals of 10.3 ms late."""
+    found = diagnosed(5024, ("cogging",))
+    assert (found.verdict, found.effects) == ("missing", ("cogging",)), found.summary()
+    assert found.model.force_delay_s == pytest.approx(0.55 / 97.0, rel=0.03)
 
 
 def test_law_without_memory_is_selected_for_coulomb_friction() -> None:

@@ -24,6 +24,7 @@ from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_force, v
 from jbf.diagnosis.terms.proposal import Model, Proposal, Term, is_accepted
 from jbf.diagnosis.terms.quantiser import quantiser
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
+from jbf.diagnosis.terms.shifts import without_delay
 from jbf.estimation.campaign import Campaign
 
 COMPETING: tuple[Term, ...] = (errors_of_motion, random_effect)
@@ -60,7 +61,8 @@ def best_term_update(
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
-    estimates = [(_estimate(term, candidates, full), full) for term in terms]
+    estimates = [_estimated_motion(candidates, present)]
+    estimates += [(term(full), full) for term in terms if term is not errors_of_motion]
     explained = explained_by_delays(present)
     if explained and min_evidence is None:
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
@@ -74,21 +76,32 @@ def best_term_update(
     return None if fewer is None else (fewer, present)
 
 
-def re_estimated_motion(candidates: Candidates, present: Names) -> Campaign | None:
-    """Campaign with the errors of the motion estimated again; None if they do not change."""
-    model = _model(candidates, present, present)
-    proposal = _estimate(errors_of_motion, candidates, model)
-    return proposal.campaign if proposal is not None and is_accepted(proposal, model) else None
+def re_estimated_motion(candidates: Candidates, present: Names) -> tuple[Campaign, Names] | None:
+    """Campaign with the errors of the motion estimated again, and the effects that remain.
+
+    None if they do not change.
+    """
+    proposal, model = _estimated_motion(candidates, present)
+    if proposal is None or not is_accepted(proposal, model):
+        return None
+    return proposal.campaign, proposal.problem.effects
 
 
-def _estimate(term: Term, candidates: Candidates, model: Model) -> Proposal | None:
-    """Estimate a term; the errors of the motion are estimated once for each set of effects."""
-    if term is not errors_of_motion:
-        return term(model)
-    fitted = candidates.fitted(model.problem.effects)
+def _estimated_motion(candidates: Candidates, present: Names) -> tuple[Proposal | None, Model]:
+    """Estimate the errors of the motion, once for each set of effects.
+
+    A delay of the force is then a part of the observation model instead of an effect. Effects that
+    are not testable with these errors are left out of the model, and the errors estimated again.
+    """
+    model, fitted = _model(candidates, without_delay(present), present), candidates.fitted(present)
     if not fitted.motion_estimated:
-        fitted.motion_proposal, fitted.motion_estimated = errors_of_motion(model), True
-    return fitted.motion_proposal
+        proposal = errors_of_motion(model)
+        if proposal is not None:
+            testable = proposal.campaign.testable(model.problem.effects)
+            if testable != model.problem.effects:
+                proposal = errors_of_motion(_model(candidates, testable, present))
+        fitted.motion_proposal, fitted.motion_estimated = proposal, True
+    return fitted.motion_proposal, model
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:

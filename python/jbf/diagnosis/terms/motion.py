@@ -23,33 +23,35 @@ from jbf.estimation.solution import Solution
 
 
 def errors_of_motion(model: Model) -> Proposal | None:
-    """Propose errors of the motion and a common delay re-estimated with the present effects.
+    """Propose errors of the motion and a common delay re-estimated with the effects of a model.
 
     They may have been negligible, or the delay wrong, next to the error of a model with fewer
-    effects. The gain is relative to the likelihood with the present motion errors. None for a rig
-    without a drive, if the errors are negligible, or if neither noise nor RMS decreases by the
-    minimum ratio of the policy.
+    effects. The gain is relative to the reference model with the present errors of the motion. None
+    for a rig without a drive, if the errors are negligible, or if neither noise nor RMS decreases
+    by the minimum ratio of the policy.
     """
-    campaign, solution = model.campaign, model.solution
+    campaign, reference = model.campaign, model.reference
     if campaign.rig.drive is None:
         return None
-    again, after = with_motion_errors(*without_motion_corrections(model.problem, solution))
+    again, after = with_motion_errors(*without_motion_corrections(model.problem, model.solution))
     before, motion = campaign.samples.motion, after.samples.motion
     if before is None and motion is None:
         return None
     # Either likelihood may be that of a recording without errors of the motion.
-    old, new = before or _without_errors(solution), motion or _without_errors(after)
-    ratio = max(old.noise / new.noise, solution.rms / max(after.rms, 1e-150))
+    old, new = before or _without_errors(reference), motion or _without_errors(after)
+    ratio = max(old.noise / new.noise, reference.rms / max(after.rms, 1e-150))
     if before is not None and ratio < model.policy.motion.min_noise_ratio:
         return None
-    weights_before, weights_after = _common_weights((campaign, solution), (again.campaign, after))
-    gain = old.whitening(weights_before).deviance(solution.residuals)
-    gain -= new.whitening(weights_after).deviance(after.residuals)
-    held_out = _held_out_deviance(model.problem, solution, old, weights_before)
-    held_out -= _held_out_deviance(again, after, new, weights_after)
     # If the delay changed, the samples of `again` differ from those of `campaign`.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
-    return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2), held_out)
+    weights_before, weights_after = _common_weights((campaign, reference), (again.campaign, after))
+    gain = old.whitening(weights_before).deviance(reference.residuals)
+    gain -= new.whitening(weights_after).deviance(after.residuals)
+    held_out = _held_out_deviance(model.reference_problem, reference, old, weights_before)
+    held_out -= _held_out_deviance(again, after, new, weights_after)
+    fewer = len(model.reference_problem.open) - len(again.open)
+    price = price_of_term(model.policy, 2) - fewer * model.price_of_effect
+    return Proposal(with_errors, again, after, gain, price, held_out)
 
 
 def _held_out_deviance(

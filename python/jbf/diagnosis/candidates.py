@@ -42,8 +42,8 @@ from jbf.models.vocabulary import Clock
 Progress = Callable[[str, int, int], None]
 
 RANKING_EVALUATIONS = 6
-"""Number of evaluations of the approximate fit by which a candidate is ranked. It limits the
-computing time only: competitive candidates are fitted further."""
+"""Maximum number of evaluations of the approximate fit by which a candidate is ranked. It limits
+the computing time only: competitive candidates are fitted further."""
 
 
 class Candidates:
@@ -105,14 +105,13 @@ class Candidates:
         pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
         return {e.name: self.campaign.missing_requirement(e) for e in pages} | self._excluded
 
-    def exclude_untestable(self, present: Sequence[str]) -> tuple[str, ...]:
-        """Return the effects of `present` that these runs can test; exclude the others permanently.
+    def exclude_untestable(self, effects: Iterable[str]) -> None:
+        """Exclude permanently those of the effects that these runs cannot test.
 
-        An effect that was added may not be testable with errors of the motion estimated again. It
-        is not tried in a later round, since these errors may be small without it.
+        An effect may become untestable with errors of the motion estimated again. It is not tried
+        in a later round, since these errors may be small without it.
         """
-        self._excluded |= {n: self.not_tried[n] for n in present if n in self.not_tried}
-        return tuple(name for name in present if name not in self._excluded)
+        self._excluded |= {n: self.not_tried[n] for n in effects if n in self.not_tried}
 
     def addable(self, present: Collection[str]) -> list[str]:
         """Names of the effects that can be added to a model with the effects `present`."""
@@ -185,8 +184,8 @@ class Candidates:
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
-            tested_on = self.fitted(present).problem.score_tested.campaign.samples
-            self.residual = residual = RichestResidual.of(directions, tested_on)
+            samples = self.fitted(present).problem.score_test_problem.campaign.samples
+            self.residual = residual = RichestResidual.of(directions, samples)
             if residual is not None:
                 directions = [replace(d, share=max(d.share, residual.share)) for d in directions]
             level = calibrated(self._white_noise_level(present), directions, residual)
@@ -244,9 +243,9 @@ class Candidates:
             near_values = self.fitted(near.effects).problem.values_by_name(near.values)
             # Law parameters that compensated for the missing effect are poor starting values; with
             # many peaks, those of the other effects are poor as well.
-            without_law = {n: v for n, v in near_values.items() if "." in n}
-            other = self.fitted(near.effects).default_starts if many else [without_law]
-            seeds, fitted.started_from = [[near_values], other], frozenset(near.effects)
+            of_effects = {n: v for n, v in near_values.items() if "." in n}
+            others = self.fitted(near.effects).default_starts if many else [of_effects]
+            seeds, fitted.started_from = [[near_values], others], frozenset(near.effects)
         if near is not None and set(near.effects) < set(effects):
             fitted.max_square = self._required_square(near)
         return Approach(fitted.problem, seeds, each=many, stepped=fitted.stepped)
@@ -276,7 +275,7 @@ class Candidates:
     ) -> None:
         """Apply a function to each set of effects in parallel threads and report progress."""
         if many_peaks(near.effects):
-            _ = self.fitted(near.effects).default_starts  # for all threads
+            _ = self.fitted(near.effects).default_starts  # computed before the threads start
         # The largest problems first.
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         done = in_parallel(work, order, fits_at_once(self.campaign, self.law, self.names))

@@ -78,7 +78,7 @@ class Fitted:
 
     @cached_property
     def default_starts(self) -> list[dict[str, float]]:
-        """Promising starting points of the model without the solutions of other models, by name."""
+        """Starting points from default starting values only, as parameter values by name."""
         return default_starts(self.problem)
 
     def current_solution(self) -> Solution:

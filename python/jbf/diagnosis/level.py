@@ -159,19 +159,19 @@ def score_test(
 
     At each of the values `starts`, the effects `added` have no influence on the model `problem`;
     `near` is the solution of the smaller model. The starting values with the largest predicted gain
-    are used. If the Jacobian of the smaller model does not fit into the memory limit, that of the
-    larger one is computed from selected runs (`Problem.searched`).
+    are used. If the Jacobian of the smaller model exceeds the memory limit, the directions and the
+    step are computed from selected runs (`Problem.searched`); the gain is that of all runs.
 
     Returns the predicted gain (`score_gain`), the score directions of the added effects, and the
     parameter values after one step from the selected starting values.
     """
-    complete = near.lines is not None
-    tested = problem if complete else problem.thinned
+    in_memory = near.lines is not None
+    tested = problem if in_memory else problem.thinned
     # Samples next to jumps, which the smaller model excludes, would favour any effect.
-    samples = near.samples if complete else near.samples.only(problem.searched)
+    samples = near.samples if in_memory else near.samples.only(problem.searched)
     is_added = np.array([tested.names[i].split(".")[0] in added for i in tested.open], dtype=bool)
     # At the null, the derivatives with respect to the other parameters are unchanged.
-    reuse_rows = complete and near.free == np.count_nonzero(~is_added)
+    reuse_rows = in_memory and near.free == np.count_nonzero(~is_added)
     best: tuple[float, Array, Array, Array] | None = None
     for start in starts:
         if reuse_rows:
@@ -182,8 +182,9 @@ def score_test(
             j[:, is_added], j[:, ~is_added] = added_columns, rest
         else:
             r, j = samples.stacked(*tested.linearise(start), near.noise)
-        gain = promised_gain(*triangular(r, j), len(r))
-        if not complete:
+        if in_memory:
+            gain = promised_gain(*triangular(r, j), len(r))
+        else:
             gain = score_gain(problem, start, near)
         if best is None or gain > best[0]:
             best = gain, r, j, start

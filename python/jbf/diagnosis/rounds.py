@@ -141,15 +141,17 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             update = best_term_update(candidates, present, least) if may_update else None
             if update is None and len(present) < policy.selection.max_effects:
                 # The errors of the motion, estimated without the effect, contain its force.
-                richer = (*present, trial_round.leader)
-                again = re_estimated_motion(candidates, richer)
-                if again is not None and trial_round.leader not in again[1]:
-                    update = again
-                else:
-                    if again is not None:
-                        candidates = candidates.with_campaign(*again)
-                        present = candidates.exclude_untestable(present)
-                        visited = {frozenset(present)}
+                leader = trial_round.leader
+                re_estimated = re_estimated_motion(candidates, (*present, leader))
+                if re_estimated is not None and leader in re_estimated[1]:
+                    campaign, remaining = re_estimated
+                    candidates = candidates.with_campaign(campaign, remaining)
+                    candidates.exclude_untestable(present)
+                    present = tuple(n for n in present if n in remaining)
+                    visited = {frozenset(present)}
+                elif may_update:
+                    update = re_estimated  # without the leader, which these errors explain
+                if update is None:
                     extended = _with_leader(candidates, present, trial_round)
         # Where no effect is added, all terms are tried.
         ended = frozenset(extended) in visited
@@ -159,7 +161,8 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             updates += 1
             campaign, effects = update
             candidates = candidates.with_campaign(campaign, effects)
-            kept = tuple(n for n in candidates.exclude_untestable(present) if n in effects)
+            candidates.exclude_untestable((*present, trial_round.leader or ""))
+            kept = tuple(n for n in present if n in effects)
             present, review_due = still_needed(candidates, kept), True
             visited, follow = {frozenset(present)}, "promising"
             # The model is tested again with the term: its step replaces the last one.

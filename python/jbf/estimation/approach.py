@@ -49,8 +49,8 @@ class Approach:
     problem
         The model.
     seeds
-        Groups of known values by name, with the same names within a group; the other parameters
-        have their starting values.
+        Groups of partial starting points: values by parameter name, with the same names within a
+        group. All starting values of the other parameters are tried.
     each
         Continue from the best starting point of each group instead of the best of all.
     stepped
@@ -76,8 +76,8 @@ class Approach:
         self.visited = Visited()
 
     @cached_property
-    def _nearest(self) -> Array:
-        """Starting point nearest to a smaller model: a step from it, or from the first group."""
+    def _best_of_first_group(self) -> Array:
+        """Best starting point of the first group of seeds, or a step from a smaller model."""
         return min([*self._likely(0), *self._stepped], key=self._square)
 
     @cached_property
@@ -104,8 +104,8 @@ class Approach:
             for seed in group
         ]
         unknown = (i for i, name in enumerate(names) if name not in group[0])
-        for _, owned in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
-            indices = list(owned)
+        for _, members in itertools.groupby(unknown, lambda i: names[i].rpartition(".")[0]):
+            indices = list(members)
             choices = list(itertools.product(*(pages[names[i]].starts for i in indices)))
             kept = [_replaced(point, indices, choice) for point in kept for choice in choices]
             if len(kept) > KEPT:
@@ -141,7 +141,7 @@ class Approach:
         """
         problem, thinned, visited = self.problem, self.thinned, self.visited
         samples = thinned.campaign.samples
-        search(thinned, samples, self._nearest, WHITE, LOOKED, visited=visited)
+        search(thinned, samples, self._best_of_first_group, WHITE, LOOKED, visited=visited)
         # The next search visits the same points and must not end there as a duplicate search.
         visited.ended.clear()
         points = list(visited.points.values())
@@ -218,7 +218,7 @@ class Approach:
 
 
 def default_starts(problem: Problem) -> list[dict[str, float]]:
-    """Promising starting points of a model from its starting values alone, by name."""
+    """Starting points of a model from default starting values only, values by name."""
     return [problem.values_by_name(values) for values in Approach(problem, [[{}]]).starts]
 
 

@@ -214,7 +214,7 @@ class Campaign:
         return float(min(map(np.min, temperatures))), float(max(map(np.max, temperatures)))
 
     def testable(self, effects: Names) -> Names:
-        """Return the effects that the runs can show (`missing_requirement`)."""
+        """Return the effects whose requirements the runs meet (`missing_requirement`)."""
         return tuple(n for n in effects if self.missing_requirement(find_effect(n)) is None)
 
     def missing_requirement(self, effect: Effect) -> str | None:

@@ -107,7 +107,9 @@ def fits_on_clocks(
     ]
     if not tested:
         return fits
-    start = _likeliest_delay(first, fits[0].solution, at_once)
+    start = _likeliest_delay(first.thinned, fits[0].solution, at_once)
+    if first.thinned is not first:
+        start = _likeliest_of(first, fits[0].solution, np.array([start.delay_s]), at_once)
     delay_s, sd_s = _fixed_point_delay(start)
     tested = [k for k in tested if abs(delay_s - clocks_s[k]) >= settings.min_delay_sigma * sd_s]
     if not tested:
@@ -142,8 +144,9 @@ def likeliest(
 def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> DelayedFit:
     """Return the likeliest of several delays of the force, half a sampling interval apart.
 
-    The force of an abrupt motion is not linear in a delay. If the likeliest delay is the longest
-    one of its sign, the range is doubled for this sign, up to a share of the shortest run.
+    The force of an abrupt motion is not linear in a delay, so that several are tried; selected runs
+    suffice for that (`Problem.thinned`). If the likeliest delay is the longest one of its sign, the
+    range is doubled for this sign, up to a share of the shortest run.
     """
     settings, step_s = first.campaign.settings, _shortest_step_s(first)
     shortest_run_s = min(p.run.duration_s for p in first.campaign.prepared)

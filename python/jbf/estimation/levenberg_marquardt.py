@@ -5,8 +5,8 @@ the prediction, damping d, and the largest norms D of the columns of J so far. T
 solved by an active-set method. A variable at its bound does not shorten the step of the others,
 unlike in `dogbox` of scipy, which may then end far from a minimum.
 
-The Jacobian is computed again only if the last step decreased the sum of squares by clearly more
-or less than it predicted, since residuals alone are several times cheaper.
+If a function for the residuals alone is given, the Jacobian is kept (as in a chord method) while
+the ratio of actual to predicted decrease is close to one, since residuals cost less.
 
 References
 ----------
@@ -17,7 +17,7 @@ Stark & Parker, Bounded-variable least-squares, Computational Statistics 10 (199
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import optimize
@@ -39,11 +39,12 @@ ACCEPTED = 1e-4
 TRUSTED = 0.25
 """Ratio of actual to predicted decrease above which a small decrease ends the search."""
 ACCURATE = 0.25
-"""Largest deviation from one of the ratio of actual to predicted decrease, with which a Jacobian
-is kept for the next step."""
+"""Largest difference from one of the ratio of actual to predicted decrease of a step, at which the
+Jacobian is kept for the next step."""
 RESIDUALS_COST = 0.2
-"""Computing cost of residuals relative to that of residuals and Jacobian."""
+"""Computing cost of residuals relative to that of residuals and Jacobian with ten parameters."""
 SMALL_DECREASE = "the sum of squares decreases by less than the tolerance"
+"""Message of a search that has converged."""
 
 
 @dataclass(frozen=True)
@@ -78,14 +79,15 @@ def minimise(
     longest
         Largest change of each variable in one step; it may be infinite.
     evaluations
-        Maximum number of calls of `evaluate`; one of `residuals` counts as `RESIDUALS_COST`.
+        Maximum number of calls of `evaluate`, without the final one. A call of `residuals` counts
+        as the fraction `RESIDUALS_COST` of one.
     tolerance
         Relative decrease of the sum of squares, predicted or achieved by a step, below which the
         search has converged.
     residuals
-        Function that returns the residuals without the Jacobian. If it is given, it tests each
-        step, and the Jacobian is kept while it predicts the decrease well (`ACCURATE`). `evaluate`
-        is called for the result.
+        Function that returns the residuals without the Jacobian. If it is given, steps are tested
+        with it, and the Jacobian is kept while it predicts the decrease well (`ACCURATE`). The last
+        call of `evaluate` is at the variables of the result.
 
     Returns
     -------
@@ -95,22 +97,24 @@ def minimise(
     low, high = bounds
     x = start
     residual, jacobian = evaluate(x)
-    current = True  # the Jacobian is that at x
+    reduced, factor = triangular(residual, jacobian)
+    jacobian_is_current = True
     norms = np.zeros(len(x))
     damping, increase, spent = INITIAL_DAMPING, FIRST_INCREASE, 1.0
-    end = SearchResult(x, False, "the maximum number of evaluations is reached")
+    converged, message = False, "the maximum number of evaluations is reached"
     while spent < evaluations:
-        reduced, factor = triangular(residual, jacobian)
         norms = np.maximum(norms, np.linalg.norm(factor, axis=0))
         square = float(reduced @ reduced)
         within = np.maximum(low - x, -longest), np.minimum(high - x, longest)
         step = _bounded_step(reduced, factor, damping, norms, within)
         linear = reduced - factor @ step
         predicted = square - float(linear @ linear)
-        if predicted <= tolerance * square and current:
-            return SearchResult(x, True, SMALL_DECREASE)
-        ratio = -1.0
-        if predicted > tolerance * square:
+        step_is_current, ratio = jacobian_is_current, -1.0
+        if predicted <= tolerance * square:
+            if jacobian_is_current:
+                converged, message = True, SMALL_DECREASE
+                break
+        else:
             trial = np.clip(x + step, low, high)
             if residuals is None:
                 new_residual, new_jacobian = evaluate(trial)
@@ -122,26 +126,27 @@ def minimise(
             ratio = decrease / predicted if np.isfinite(decrease) else -1.0
         if ratio > ACCEPTED:
             x, residual, jacobian = trial, new_residual, new_jacobian
+            jacobian_is_current = residuals is None
             damping *= max(LEAST_FACTOR, 1.0 - (2.0 * ratio - 1.0) ** 3)
             increase = FIRST_INCREASE
-            current = residuals is None
-            if decrease <= tolerance * square and ratio > TRUSTED:
-                end = SearchResult(x, True, SMALL_DECREASE)
+            if decrease <= tolerance * square and ratio > TRUSTED and step_is_current:
+                converged, message = True, SMALL_DECREASE
                 break
-        elif current:
+        elif step_is_current:
             damping *= increase
             increase *= 2.0
             if damping > MAX_DAMPING:
-                return SearchResult(
-                    x, np.isfinite(decrease), "no step decreases the sum of squares"
-                )
-        if not current and abs(ratio - 1.0) > ACCURATE:
+                converged, message = np.isfinite(decrease), "no step decreases the sum of squares"
+                break
+            continue
+        if not jacobian_is_current and abs(ratio - 1.0) > ACCURATE:
             residual, jacobian = evaluate(x)
-            current = True
+            jacobian_is_current = True
             spent += 1.0
-    if not current:
+        reduced, factor = triangular(residual, jacobian)
+    if not jacobian_is_current:
         evaluate(x)
-    return replace(end, values=x)
+    return SearchResult(x, bool(converged), message)
 
 
 def _bounded_step(

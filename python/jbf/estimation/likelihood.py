@@ -183,7 +183,7 @@ def noise_at(
     """Estimate the noise model of the residuals at some values, without the random effects of runs.
 
     Of many samples, those of selected runs are used (`Problem.searched`). `lines` holds the
-    residuals and derivatives at these values, if they are known.
+    residuals and derivatives of all runs at these values, if they are known.
     """
     selection = problem.searched
     samples = samples if len(selection) == len(samples.runs) else samples.only(selection)

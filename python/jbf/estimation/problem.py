@@ -163,19 +163,17 @@ class Problem:
         return residuals, [bounded(j, scale) for _, j in rows]
 
     def gauss_newton_rows(
-        self, values: Array, samples: Samples, noise: Noise, lines: Lines | None = None
+        self, values: Array, samples: Samples, noise: Noise
     ) -> tuple[Array, Array, int]:
         """Innovations and their Jacobian in triangular form, and the number of innovations.
 
-        The triangular form (`triangular`) has fewer rows and the same inner products. The rows are
-        computed from `lines`, the result of :meth:`linearise`, if it is given.
+        The triangular form (`triangular`) has fewer rows and the same inner products.
         """
         r, j, count = [], [], 0
         lengths = [len(p.friction) for p in self.campaign.prepared]
         for group in memory_groups(lengths, len(self.open)):
             part = samples if len(group) == len(lengths) else samples.only(group)
-            rows = self.linearise(values, group) if lines is None else lines
-            innovations, slopes = part.stacked(*rows, noise)
+            innovations, slopes = part.stacked(*self.linearise(values, group), noise)
             reduced_r, reduced_j = triangular(innovations, slopes)
             r.append(reduced_r)
             j.append(reduced_j)
@@ -203,8 +201,8 @@ class Problem:
         return self.with_campaign(self.campaign.only(selection))
 
     @property
-    def score_tested(self) -> Problem:
-        """Problem of the score tests of further effects: `thinned` if the memory is limited."""
+    def score_test_problem(self) -> Problem:
+        """Problem whose samples score tests use: this one, or `thinned` if memory is limited."""
         return self if self.fits_in_memory else self.thinned
 
     def with_campaign(self, campaign: Campaign) -> Problem:

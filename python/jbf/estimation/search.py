@@ -1,7 +1,7 @@
 """Least squares on innovations from one starting point, within bounds.
 
-Searches of one problem share their evaluations. A search that starts at the end of another search
-does not evaluate this point again, and a search ends if it reaches a point of another search.
+Searches of one problem share their evaluations. A search that starts at the lowest point of the
+others does not evaluate it again, and a search ends if it reaches a point of another search.
 `other_peaks` finds further starting points for a parameter, such as a frequency, whose likelihood
 has several maxima.
 """
@@ -114,7 +114,10 @@ class Visited:
 
 @dataclass(frozen=True)
 class SearchEnd(SearchResult):
-    """End of a search, with residuals and Jacobian of all samples there if they are available."""
+    """End of a search: parameter values instead of search variables, and what is known there.
+
+    `lines` has the residuals and the Jacobian at the values; None if they are not held in memory.
+    """
 
     lines: Lines | None = None
 
@@ -138,7 +141,7 @@ def search(
     Parameters
     ----------
     evaluations
-        Maximum number of evaluations.
+        Maximum number of evaluations of residuals and Jacobian (`minimise`).
     visited
         Evaluations of other searches of this problem, on these samples and with this noise. The
         search ends at a point visited by one of them that ended lower.
@@ -153,12 +156,15 @@ def search(
     path: list[SearchPoint] = []
 
     def evaluate(x: Array) -> tuple[Array, Array]:
-        """Innovations and Jacobian at the variables `x`; in reduced rows if memory is limited."""
+        """Innovations and Jacobian at the variables `x`; in triangular form if memory is limited.
+
+        It adds the point to the path. `_Joined` is raised if another search has visited it.
+        """
         values = problem.decode(x, start)
         point, known = memory.at(values), None
         if problem.fits_in_memory:
-            known = memory.lines_at(values) or (None if path else lines)
-            known = known or problem.linearise(values)
+            at_start = lines if not path else None
+            known = memory.lines_at(values) or at_start or problem.linearise(values)
             r, j = samples.stacked(*known, noise)
             count = len(r)
         elif point is None:

@@ -124,7 +124,7 @@ def test_effects_that_distort_a_force_are_not_tried_if_the_acceleration_is_uncer
 
 
 def test_errors_of_the_motion_are_proposed_without_effects_that_they_make_untestable() -> None:
-    """A bent sensor follows errors of the acceleration at its peaks."""
+    """The nonlinearity of a sensor follows errors of the acceleration at its peaks."""
     candidates = Candidates(Campaign.prepare(*recorded(5011)), "coulomb", "journal")
     for effects in (("inertia",), ("inertia", "sensor_nonlinearity")):
         proposed = re_estimated_motion(candidates, effects)

@@ -92,8 +92,8 @@ def test_certified_values_of_the_nist_data_set_misra1a(start: tuple[float, float
     assert residual @ residual == pytest.approx(1.2455138894e-1, rel=1e-7)
 
 
-def test_residuals_alone_test_the_steps_while_the_jacobian_predicts_them() -> None:
-    """Fit of an exponential; a function of the residuals replaces most Jacobians."""
+def test_jacobian_is_kept_while_it_predicts_the_decrease() -> None:
+    """Fit of an exponential, with and without a function for the residuals alone."""
     time = np.linspace(0.0, 3.0, 40)
     data = 2.0 * np.exp(-1.3 * time) + 0.01 * np.sin(9.0 * time)
     evaluated: list[Array] = []
@@ -107,13 +107,13 @@ def test_residuals_alone_test_the_steps_while_the_jacobian_predicts_them() -> No
         return residuals(x), np.column_stack([decay, -x[0] * time * decay])
 
     box, start, longest = bounds([0.0, 0.0], [9.0, 9.0]), np.array([1.0, 0.3]), np.full(2, np.inf)
-    wanted = minimise(function, start, box, longest, 60, 1e-12)
-    most = len(evaluated)
+    expected = minimise(function, start, box, longest, 60, 1e-12)
+    calls_without = len(evaluated)
     evaluated.clear()
     end = minimise(function, start, box, longest, 60, 1e-12, residuals)
     assert end.converged
-    np.testing.assert_allclose(end.values, wanted.values, rtol=1e-6)
-    assert len(evaluated) < most
+    np.testing.assert_allclose(end.values, expected.values, rtol=1e-6)
+    assert len(evaluated) < calls_without
     assert evaluated[-1] is end.values
     # A search that ends early also ends at values that were evaluated.
     evaluated.clear()

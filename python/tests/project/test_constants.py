@@ -53,7 +53,7 @@ NUMERICAL = {
         estimation.posterior_motions: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS
         estimation.random_effects: ROUNDING
-        estimation.levenberg_marquardt: MAX_DAMPING TRUSTED
+        estimation.levenberg_marquardt: MAX_DAMPING TRUSTED ACCURATE
         estimation.search: NEAR SAME ENDED NEAR_MINIMUM
         estimation.standard_errors: INSENSITIVE SINGULAR TAKES_PART
         estimation.starting_values: SHORTEST_M
@@ -71,6 +71,7 @@ NUMERICAL = {
         estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP BLOCK
         estimation.approach: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED
         estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS ROBUST_ROUNDS
+        estimation.levenberg_marquardt: RESIDUALS_COST
         estimation.problem: SLOPES_COST
         estimation.search: CLIMBED
         estimation.transients: RANKING_EVALUATIONS

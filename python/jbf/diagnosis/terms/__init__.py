@@ -61,7 +61,7 @@ def best_term_update(
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
-    estimates = [_estimated_motion(candidates, present)]
+    estimates = [(_errors_of_motion(candidates, present), full)]
     estimates += [(term(full), full) for term in terms if term is not errors_of_motion]
     explained = explained_by_delays(present)
     if explained and min_evidence is None:
@@ -79,29 +79,30 @@ def best_term_update(
 def re_estimated_motion(candidates: Candidates, present: Names) -> tuple[Campaign, Names] | None:
     """Campaign with the errors of the motion estimated again, and the effects that remain.
 
-    None if they do not change.
+    None if the estimated errors are not accepted.
     """
-    proposal, model = _estimated_motion(candidates, present)
-    if proposal is None or not is_accepted(proposal, model):
+    proposal = _errors_of_motion(candidates, present)
+    if proposal is None or not is_accepted(proposal, _model(candidates, present, present)):
         return None
     return proposal.campaign, proposal.problem.effects
 
 
-def _estimated_motion(candidates: Candidates, present: Names) -> tuple[Proposal | None, Model]:
+def _errors_of_motion(candidates: Candidates, present: Names) -> Proposal | None:
     """Estimate the errors of the motion, once for each set of effects.
 
-    A delay of the force is then a part of the observation model instead of an effect. Effects that
-    are not testable with these errors are left out of the model, and the errors estimated again.
+    The effect `time_delay` is omitted, since a common delay is estimated with the errors. Effects
+    that are not testable with the estimated errors are omitted as well, and the errors estimated
+    again.
     """
-    model, fitted = _model(candidates, without_delay(present), present), candidates.fitted(present)
-    if not fitted.motion_estimated:
-        proposal = errors_of_motion(model)
-        if proposal is not None:
-            testable = proposal.campaign.testable(model.problem.effects)
-            if testable != model.problem.effects:
-                proposal = errors_of_motion(_model(candidates, testable, present))
+    fitted = candidates.fitted(present)
+    if not fitted.motion_estimated and candidates.campaign.rig.drive is not None:
+        effects = without_delay(present)
+        proposal = errors_of_motion(_model(candidates, effects, present))
+        while proposal is not None and proposal.campaign.testable(effects) != effects:
+            effects = proposal.campaign.testable(effects)
+            proposal = errors_of_motion(_model(candidates, effects, present))
         fitted.motion_proposal, fitted.motion_estimated = proposal, True
-    return fitted.motion_proposal, model
+    return fitted.motion_proposal
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:

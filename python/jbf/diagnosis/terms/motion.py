@@ -26,9 +26,10 @@ def errors_of_motion(model: Model) -> Proposal | None:
     """Propose errors of the motion and a common delay re-estimated with the effects of a model.
 
     They may have been negligible, or the delay wrong, next to the error of a model with fewer
-    effects. The gain is relative to the reference model with the present errors of the motion. None
-    for a rig without a drive, if the errors are negligible, or if neither noise nor RMS decreases
-    by the minimum ratio of the policy.
+    effects. The gain is relative to the reference model with the present errors of the motion, and
+    the thresholds of effects that the model lacks reduce the price. None for a rig without a drive,
+    if the errors are negligible, or if neither noise nor RMS decreases by the minimum ratio of the
+    policy.
     """
     campaign, reference = model.campaign, model.reference
     if campaign.rig.drive is None:
@@ -49,8 +50,8 @@ def errors_of_motion(model: Model) -> Proposal | None:
     gain -= new.whitening(weights_after).deviance(after.residuals)
     held_out = _held_out_deviance(model.reference_problem, reference, old, weights_before)
     held_out -= _held_out_deviance(again, after, new, weights_after)
-    fewer = len(model.reference_problem.open) - len(again.open)
-    price = price_of_term(model.policy, 2) - fewer * model.price_of_effect
+    lacking = len(model.reference_problem.effects) - len(again.effects)
+    price = price_of_term(model.policy, 2) - lacking * model.price_of_effect
     return Proposal(with_errors, again, after, gain, price, held_out)
 
 

@@ -27,9 +27,9 @@ def errors_of_motion(model: Model) -> Proposal | None:
 
     They may have been negligible, or the delay wrong, next to the error of a model with fewer
     effects. The gain is relative to the reference model with the present errors of the motion, and
-    the thresholds of effects that the model lacks reduce the price. None for a rig without a drive,
-    if the errors are negligible, or if neither noise nor RMS decreases by the minimum ratio of the
-    policy.
+    the threshold is reduced by those of effects that the model lacks. None for a rig without a
+    drive, if the errors are negligible, or if neither noise nor RMS decreases by the minimum ratio
+    of the policy.
     """
     campaign, reference = model.campaign, model.reference
     if campaign.rig.drive is None:

@@ -134,6 +134,15 @@ def test_errors_of_the_motion_are_proposed_without_effects_that_they_make_untest
         assert campaign.motion_share > 0.1 > candidates.campaign.motion_share
 
 
+def test_errors_of_the_motion_are_proposed_with_a_delay_of_the_recording() -> None:
+    """Both an effect and the recording can have a delay, which would then be estimated twice."""
+    candidates = Candidates(Campaign.prepare(*recorded(4060)), "coulomb", "journal")
+    assert re_estimated_motion(candidates, ("inertia", "time_delay")) is None
+    proposal = candidates.fitted(("inertia", "time_delay")).motion_proposal
+    assert proposal is not None
+    assert proposal.problem.effects == ("inertia",)
+
+
 def test_delay_of_an_abrupt_force_belongs_to_the_recording_instead_of_an_effect() -> None:
     """The force was recorded 0.55 sampling intervals of 10.3 ms late."""
     found = diagnosed(5024, ("cogging",))

@@ -123,6 +123,22 @@ def test_jacobian_is_kept_while_it_predicts_the_decrease() -> None:
     assert np.sum(residuals(end.values) ** 2) < np.sum(residuals(start) ** 2)
 
 
+def test_gradient_is_zero_at_the_end_although_a_kept_jacobian_predicts_no_decrease() -> None:
+    """The first step zeroes one residual, which is all that the Jacobian at the start shows."""
+
+    def residuals(x: Array) -> Array:
+        return np.array([1.0 - x[0], 1.0 - 0.1 * x[0] ** 2])
+
+    def function(x: Array) -> tuple[Array, Array]:
+        return residuals(x), np.array([[1.0], [0.2 * x[0]]])
+
+    box, longest = bounds([-9.0], [9.0]), np.full(1, np.inf)
+    end = minimise(function, np.zeros(1), box, longest, 40, 1e-12, residuals)
+    assert end.converged
+    residual, jacobian = function(end.values)
+    assert abs(float(jacobian[:, 0] @ residual)) < 1e-5
+
+
 def test_search_without_sufficient_evaluations_has_not_converged() -> None:
     box = bounds([-3.0, -3.0], [3.0, 3.0])
     end = minimise(rosenbrock, np.array([-1.2, 1.0]), box, np.full(2, np.inf), 3, 1e-12)

@@ -150,7 +150,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                     present = tuple(n for n in present if n in remaining)
                     visited = {frozenset(present)}
                 elif may_update:
-                    update = re_estimated  # without the leader, which these errors explain
+                    update = re_estimated  # the leader is not testable with these errors
                 if update is None:
                     extended = _with_leader(candidates, present, trial_round)
         # Where no effect is added, all terms are tried.

@@ -59,8 +59,7 @@ def solution_of(
     """A solution with the given residuals and with all parameter values zero."""
     slopes = [np.zeros((len(r), 0)) for r in residuals] if jacobian is None else list(jacobian)
     values = np.zeros(slopes[0].shape[1])
-    cost = samples.cost(residuals, noise)
-    return Solution((), values, list(residuals), slopes, noise, cost, True, "", samples)
+    return Solution((), values, list(residuals), slopes, noise, True, "", samples)
 
 
 def autoregressive(seed: int, memory_s: float, sd: float, n: int, step_s: float = STEP_S) -> Array:

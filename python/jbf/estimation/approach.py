@@ -137,7 +137,9 @@ class Approach:
         """Search by a few steps from the first group, and compare with a smaller model's solution.
 
         The first result is a solution with the noise of `near`. The second one is the gain in twice
-        the log likelihood over `near` that the linear model predicts at the best visited point.
+        the log likelihood: the smallest minimum of the linear models at the visited points relative
+        to that of the linear model at `near`, which need not be a minimum for white noise. With
+        coloured noise, it is the larger one of this gain and that over `near` in its noise.
         """
         problem, thinned, visited = self.problem, self.thinned, self.visited
         samples = thinned.campaign.samples
@@ -147,7 +149,10 @@ class Approach:
         points = list(visited.points.values())
         values = min(points, key=lambda point: point.square).values
         linear = min(unexplained_square(point.jacobian, point.residual) for point in points)
-        before = samples.square([near.residuals[i] for i in problem.searched])
+        residuals = [near.residuals[i] for i in problem.searched]
+        jacobian = [near.jacobian[i] for i in problem.searched]
+        r, j = samples.stacked(residuals, jacobian, WHITE)
+        before = unexplained_square(j, r)
         count = problem.campaign.samples.count
         promised = count * _log_ratio(before, linear)
         lines = visited.lines_at(values) if thinned is problem else None

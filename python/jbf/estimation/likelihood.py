@@ -7,6 +7,7 @@ step is made.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -24,13 +25,21 @@ from jbf.estimation.variance import clipped_square, robust_size, significant_inf
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
     """Log-likelihood gain of the richer solution over the simpler one, on common sample weights.
 
-    For each sample the smaller of the two models' weights is used.
+    For each sample the smaller of the two models' weights is used. Each solution is evaluated with
+    the noise models of both, and its larger likelihood counts. Otherwise, a solution with a noise
+    model that fits poorly, such as white noise from `settle`, would make the other appear better.
     """
-    if richer.samples is simpler.samples:
-        return simpler.cost - richer.cost
     shared = common_samples(richer.samples, simpler.samples)
+    richer, simpler = (
+        solution if solution.samples is shared else replace(solution, samples=shared)
+        for solution in (richer, simpler)
+    )
+    # Errors of the motion and random effects determine the covariance with the noise.
+    if richer.noise == simpler.noise or shared.motion is not None or shared.between is not None:
+        return simpler.cost - richer.cost
     richer_cost, simpler_cost = (
-        shared.cost(solution.residuals, solution.noise) for solution in (richer, simpler)
+        min(solution.cost, shared.cost(solution.residuals, other.noise))
+        for solution, other in ((richer, simpler), (simpler, richer))
     )
     return simpler_cost - richer_cost
 

@@ -276,9 +276,8 @@ class Problem:
         else:
             residuals = OnDemand(lambda i: self.residuals(values, [i])[0], count)
             jacobian = OnDemand(lambda i: self.linearise(values, [i])[1][0], count)
-        cost = samples.cost(residuals, noise)
         return Solution(
-            self.effects, values, residuals, jacobian, noise, cost, converged, message, samples
+            self.effects, values, residuals, jacobian, noise, converged, message, samples
         )
 
 

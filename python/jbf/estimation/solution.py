@@ -31,8 +31,6 @@ class Solution:
         large numbers of samples, both are computed at each access.
     noise
         Noise model of the residuals.
-    cost
-        `n log(mean square innovation)` over weighted samples.
     converged, message
         Convergence flag and message of the search.
     samples
@@ -49,7 +47,6 @@ class Solution:
     residuals: Sequence[Array]
     jacobian: Sequence[Array]
     noise: Noise
-    cost: float
     converged: bool
     message: str
     samples: Samples
@@ -66,6 +63,11 @@ class Solution:
         if isinstance(self.residuals, list) and isinstance(self.jacobian, list):
             return self.residuals, self.jacobian
         return None
+
+    @cached_property
+    def cost(self) -> float:
+        """Cost of the residuals, ``n log(mean square innovation)`` over weighted samples."""
+        return self.samples.cost(self.residuals, self.noise)
 
     @cached_property
     def rms(self) -> float:

@@ -194,13 +194,11 @@ def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None
         residuals=right.residuals,
         noise=WHITE,
         samples=fewer,
-        cost=fewer.cost(right.residuals, WHITE),
     )
     assert evidence(candidates, rich, simple) > 60.0
     assert evidence_on_common_samples(candidates, rich, simple) < 0.0
     # The gain counts if both models use the same samples.
-    cost = simple.samples.cost(right.residuals, WHITE)
-    same = replace(rich, samples=simple.samples, cost=cost)
+    same = replace(rich, samples=simple.samples)
     assert (
         evidence_on_common_samples(candidates, same, simple)
         == evidence(candidates, same, simple)
@@ -243,7 +241,7 @@ def test_fit_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
 def test_score_test_predicts_likelihood_gain_and_value_of_a_linear_effect() -> None:
     campaign = Campaign.prepare(Rig(), _offset_runs(0.03))
     bare, near = fit_from_truth(campaign)
-    near = replace(near, noise=WHITE, cost=near.samples.cost(near.residuals, WHITE))
+    near = replace(near, noise=WHITE)
     problem, fitted = fit_from_truth(campaign, "sensor_offset")
     null = dict(zip(bare.names, near.values.tolist(), strict=True)) | {"sensor_offset.b": 0.0}
     start = np.array([null[name] for name in problem.names])

@@ -275,7 +275,7 @@ def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, l
 
     every = values(range(RUNS))
     residuals = [y - x @ every for x, y in zip(design, force, strict=True)]
-    solution = Solution((), every, residuals, list(design), WHITE, 0.0, True, "", SAMPLES)
+    solution = Solution((), every, residuals, list(design), WHITE, True, "", SAMPLES)
     determined = np.ones(len(every), dtype=bool)
     parts = []
     for i in range(RUNS):

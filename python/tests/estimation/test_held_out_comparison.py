@@ -30,7 +30,7 @@ def linear_model(rng: np.random.Generator, weighted: bool = False) -> Solution:
     weight = [rng.uniform(0.2, 1.0, n) if weighted else np.ones(n) for n in COUNTS]
     counted = tuple(np.ones(n, dtype=bool) for n in COUNTS)
     samples = Samples(("a", "b", "c"), (0.1, 0.1, 0.1), counted, tuple(weight))
-    return Solution((), np.zeros(3), residuals, jacobian, WHITE, 0.0, True, "", samples)
+    return Solution((), np.zeros(3), residuals, jacobian, WHITE, True, "", samples)
 
 
 def held_out(run: int, errors: Array, determined: Sequence[bool] = ALL) -> HeldOutPart:

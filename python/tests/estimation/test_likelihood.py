@@ -10,6 +10,7 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from coulomb_problems import (
     STEP_S,
+    arma_innovations,
     autoregressive,
     coulomb_problem,
     samples_of,
@@ -18,6 +19,7 @@ from coulomb_problems import (
     values_of,
 )
 from jbf.estimation import least_squares, likelihood, variance
+from jbf.estimation.noise import Noise
 from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.variance import clipped_square, robust_size
 from scipy import linalg, stats
@@ -34,6 +36,18 @@ def test_likelihood_gain_is_n_times_the_log_ratio_of_squares() -> None:
     after = solution_of([np.full(60, 3.0), np.full(40, 3.0)], samples)
     assert likelihood.likelihood_gain(after, before) == pytest.approx(100.0 * np.log(4.0))
     assert likelihood.likelihood_gain(before, after) == pytest.approx(-100.0 * np.log(4.0))
+
+
+def test_likelihood_gain_does_not_contain_the_difference_of_the_noise_models() -> None:
+    """The gain is that of the innovations in the coloured noise of one solution."""
+    samples, noise = samples_of([np.ones(4000)]), Noise(20.0 * STEP_S, 1.0)
+    drawn = autoregressive(5, noise.memory_s, 1.0, 4000)
+    with_slope = drawn + np.linspace(-0.5, 0.5, 4000)
+    coloured = solution_of([drawn], samples, noise=noise)
+    assert likelihood.likelihood_gain(coloured, solution_of([drawn], samples)) == 0.0
+    squares = [np.sum(arma_innovations(r, STEP_S, noise) ** 2) for r in (with_slope, drawn)]
+    gain = likelihood.likelihood_gain(coloured, solution_of([with_slope], samples))
+    assert gain == pytest.approx(4000.0 * np.log(squares[0] / squares[1]), rel=1e-6)
 
 
 def test_log_likelihood_is_that_of_a_normal_vector_with_weights_and_random_effects() -> None:

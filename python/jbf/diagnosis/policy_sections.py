@@ -87,8 +87,8 @@ class HeldOut:
     )
     no_worse_ratio: float = documented(
         1.03,
-        "ratio of held-out RMS values up to which a term counts as predicting equally well, and "
-        "above which a law counts as predicting better",
+        "ratio of held-out RMS values up to which a term, or an exchanged effect, counts as "
+        "predicting equally well, and above which a law counts as predicting better",
         "typical difference between fits of one model to the two halves of a recording",
     )
 
@@ -111,19 +111,14 @@ class Search:
     )
     rank_margin: float = documented(
         60.0,
-        "gain below the leader's share up to which a candidate is fitted to convergence, and a "
-        "new start of a multimodal likelihood is continued",
-        "chosen for speed; no change of a verdict was observed",
-    )
-    rank_fraction: float = documented(
-        0.6,
-        "share of the leader's evidence that a candidate needs to be fitted to convergence",
+        "a new start of a multimodal likelihood is continued if it is less than this below the "
+        "highest maximum; a refit that gains more shows that the first fit was a local minimum",
         "chosen for speed; no change of a verdict was observed",
     )
     linear_gain_factor: float = documented(
         2.0,
         "assumed maximum ratio of a candidate's gain to the gain that the linear model predicts "
-        "after three steps; a candidate that cannot reach the leader's share is not continued",
+        "after three evaluations; a candidate that cannot tie with the leader is not continued",
         "the largest observed ratio, in fits with effects of every kind, was 1.5",
     )
     step_gain_factor: float = documented(
@@ -135,6 +130,12 @@ class Search:
         0.5,
         "minimum share of the leader's evidence for an effect with a multimodal likelihood to be "
         "searched at its other maxima",
+        "chosen for speed",
+    )
+    group_size: int = documented(
+        4,
+        "number of candidates that are fitted approximately at a time; their evidence decides "
+        "which later ones are skipped",
         "chosen for speed",
     )
     leaders: int = documented(

@@ -1,8 +1,8 @@
 """Review of a model: the effects that it needs, and other effects that would fit as well.
 
 An effect is removed if it has no evidence and held-out runs do not confirm it. It is replaced by
-another effect that has more evidence. The same comparison gives the posterior weights of the
-alternatives to an effect.
+another effect that has more evidence and predicts held-out runs no worse. The same comparison gives
+the posterior weights of the alternatives to an effect.
 
 A motor accelerates its load and carries its weight, independently of friction. Inertia or mass,
 weight and offset (the machine terms) are part of the initial model of the diagnosis of a drive;
@@ -135,9 +135,17 @@ def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozense
         tie = candidates.policy.selection.tie
         costs = swap_costs(candidates, rest, others, full, simpler, max_loss=-tie, only_best=True)
         best = min(costs, key=costs.__getitem__, default=name)
-        if best != name and costs[best] < -tie:
-            current = tuple(best if e == name else e for e in current)
+        exchanged = tuple(best if e == name else e for e in current)
+        better = best != name and costs[best] < -tie
+        if better and _predicts_no_worse(candidates, exchanged, current):
+            current = exchanged
     return current
+
+
+def _predicts_no_worse(candidates: Candidates, changed: Names, current: Names) -> bool:
+    """Whether a changed model predicts held-out runs equally well (`no_worse_ratio`), or better."""
+    max_rms = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
+    return candidates.held_out_rms(changed) <= max_rms
 
 
 def swap_costs(

@@ -90,7 +90,7 @@ def _ended_early(last: Selected, stop: Unfinished) -> Selected:
     if steps[-1].effects != present:
         steps.append(step(candidates, present, ()))
     else:
-        # The model with the leading effect was not reviewed.
+        # The model with the leading effect was not completed.
         trials = list(steps[-1].trials)
         for i, trial in enumerate(trials):
             if trial.outcome == "added":
@@ -106,7 +106,7 @@ def _ended_early(last: Selected, stop: Unfinished) -> Selected:
 
 
 def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
-    """Select effects and terms, and append each tested and each reviewed model to `completed`.
+    """Select effects and terms, and append each tested and each extended model to `completed`.
 
     Each pass of the loop tests the candidates of the present model once and ends in one of four
     ways: with a changed observation model, with another set of effects to test, with more
@@ -117,7 +117,8 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
     visited = {frozenset(present)}
-    updates, review_due = 0, False
+    reviewed: set[frozenset[str]] = set()
+    updates = 0
     while True:
         # Exclude samples at which this model shows a further initial-state transient.
         settled = without_further_transients(
@@ -126,7 +127,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         if settled is not None:
             candidates = candidates.with_campaign(settled)
             present = still_needed(candidates, present)
-            visited = {frozenset(present)}
+            visited, reviewed = {frozenset(present)}, set()
         candidates.reached.candidates, candidates.reached.present = candidates, present
         # Test every candidate in addition to the present effects.
         trial_round = try_candidates(candidates, present, follow)
@@ -148,31 +149,37 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                     candidates = candidates.with_campaign(campaign, remaining)
                     candidates.exclude_untestable(present)
                     present = tuple(n for n in present if n in remaining)
-                    visited = {frozenset(present)}
+                    visited, reviewed = {frozenset(present)}, set()
                 elif may_update:
                     update = re_estimated  # the leader is not testable with these errors
                 if update is None:
                     extended = _with_leader(candidates, present, trial_round)
-        # Where no effect is added, all terms are tried.
-        ended = frozenset(extended) in visited
-        if update is None and ended and follow == "promising" and may_update:
+        # If no effect is added, terms are added one by one, the largest evidence first. A term
+        # that competes with the leader is added alone.
+        ended = update is None and frozenset(extended) in visited
+        if ended and follow == "promising" and may_update:
             update = best_term_update(candidates, present)
         if update is not None:
-            updates += 1
-            campaign, effects = update
-            candidates = candidates.with_campaign(campaign, effects)
-            candidates.exclude_untestable((*present, trial_round.leader or ""))
-            kept = tuple(n for n in present if n in effects)
-            present, review_due = still_needed(candidates, kept), True
-            visited, follow = {frozenset(present)}, "promising"
-            # The model is tested again with the term: its step replaces the last one.
+            while update is not None:
+                updates += 1
+                campaign, effects = update
+                candidates = candidates.with_campaign(campaign, effects)
+                candidates.exclude_untestable((*present, trial_round.leader or ""))
+                present = still_needed(candidates, tuple(n for n in present if n in effects))
+                more = ended and updates < policy.terms.max_updates
+                update = best_term_update(candidates, present) if more else None
+            visited, reviewed, follow = {frozenset(present)}, set(), "promising"
+            # The model is tested again with these terms: that step replaces the last one.
             steps.pop()
             continue
-        # The effects are reviewed once after changes of the observation model.
-        if ended and review_due:
-            present, review_due = reconsider(candidates, present), False
-            if frozenset(present) not in visited:
-                visited.add(frozenset(present))
+        # If neither an effect nor a term is added, effects may be exchanged or removed, once per
+        # model. The selection does not return to a model that was tested already.
+        if ended and frozenset(present) not in reviewed:
+            reviewed.add(frozenset(present))
+            revised = reconsider(candidates, present, trial_round.unconfirmed)
+            if frozenset(revised) not in visited:
+                visited.add(frozenset(revised))
+                present, follow = revised, "promising"
                 continue
         # With residual structure, candidates with a small score are fitted, then pairs of them.
         if ended and follow == "promising" and remainder_of(candidates, present):
@@ -190,7 +197,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 remainders = _unconfirmed_candidate(candidates, present)
             return Selected(candidates, present, steps, remainders)
         visited.add(frozenset(extended))
-        present, follow, review_due = extended, "promising", False
+        present, follow = extended, "promising"
         completed.append(Selected(candidates, present, list(steps)))
 
 
@@ -222,7 +229,7 @@ def _with_leader(candidates: Candidates, present: Names, trial_round: Round) -> 
     for name in (trial_round.leader, *tied) if present else (trial_round.leader,):
         assert name is not None
         candidates.search_peaks((*present, name))
-        models.append(reconsider(candidates, (*present, name), trial_round.unconfirmed))
+        models.append(still_needed(candidates, (*present, name)))
     errors = [candidates.held_out_rms(model) for model in models]
     # A tied candidate has not been confirmed by held-out runs.
     share = candidates.policy.least_share(candidates.campaign.motion_share)
@@ -269,7 +276,7 @@ def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
         return present
     if evidence(candidates, richer, base) <= 0.0 and full_gain(candidates, richer, base) <= 0.0:
         return present
-    return reconsider(candidates, still_needed(candidates, best))
+    return still_needed(candidates, best)
 
 
 def _promising(candidates: Candidates, present: Names) -> list[str]:

@@ -76,8 +76,8 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     """Test every candidate in addition to the present effects, and select the one to add.
 
     `follow` selects the candidates to fit: those with a sufficient score (`shown`), of these only
-    the ones that may still lead after a few steps (`promising`), or all. For a strong effect, the
-    score at its null may be uninformative.
+    the ones that may still lead or tie after a few steps (`promising`), or all. For a strong
+    effect, the score at its null may be uninformative.
     """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
@@ -108,7 +108,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "rejected"
             reason = (
                 f"skipped: its largest possible evidence is {max(candidate.limit, 0.0):.0f}, "
-                "too little to lead"
+                "too little to tie with the leader"
             )
         elif gain > 0 and leader is None:
             confirmation = candidates.confirmation(present, name)
@@ -133,7 +133,8 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "rejected"
             reason = f"evidence is {best - gain:.0f} below that of {leader}"
         trials.append(Trial(name, rms, float(gain), outcome, reason, name in unconfirmed))
-    if max((r.limit for r in ranked if np.isfinite(r.limit)), default=-np.inf) > best:
+    least = max(best - policy.selection.tie, 0.0)
+    if max((r.limit for r in ranked if np.isfinite(r.limit)), default=-np.inf) > least:
         # The leader that these candidates were compared with was not accepted.
         return try_candidates(candidates, present, "shown")
     if leader is None:
@@ -205,42 +206,29 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     least = policy.search.min_score_share * candidates.price(1)
     # In a correlated residual a sample is less informative, and any candidate has a small gain.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
-    approximate = dict.fromkeys(rivals, -np.inf)
-    limits = _limits_below_leader(candidates, present, shown, base) if follow == "promising" else {}
-    followed = [name for name in shown if name not in limits]
-    candidates.rank_all([(*present, name) for name in followed], base)
-    for name in followed:
-        approximate[name] = evidence(candidates, candidates.rank((*present, name)), base)
-    line = (
-        policy.search.rank_fraction * max(max(approximate.values(), default=0.0), 0.0)
-        - policy.search.rank_margin
-    )
-    ranked: list[Ranked] = []
+    approximate, skipped = _rank_in_groups(candidates, present, shown, base, follow)
+    ranked = _converge_competitive(candidates, present, approximate, base, follow)
     for name in rivals:
-        effects = (*present, name)
-        if name in limits:
-            solution = candidates.look(effects, base).current_solution()
-        elif approximate[name] == -np.inf:
-            solution = base
-        else:
-            solution = candidates.rank(effects)
-            promised = (
-                approximate[name]
-                + policy.search.step_gain_factor * next_step_gain(solution) * share
-            )
-            if approximate[name] > line and promised > 0.0:
-                solution = candidates.converge(effects)
-        # At the null an effect does not change the model, which gives a lower bound of the
-        # evidence.
-        more = len(candidates.fitted(effects).problem.open) - base.free
-        gain = max(evidence(candidates, solution, base), -candidates.price(more))
-        ranked.append(Ranked(gain, name, solution, limits.get(name, np.inf)))
+        if name in skipped:
+            solution = candidates.look((*present, name), base).current_solution()
+            gain = evidence(candidates, solution, base)
+            ranked.append(Ranked(gain, name, solution, skipped[name]))
+        elif name not in approximate:
+            ranked.append(Ranked(-candidates.price(1), name, base))
+    # At the null an effect does not change the model, which gives a lower bound of the evidence.
+    ranked = [
+        replace(
+            r,
+            evidence=max(r.evidence, -candidates.price(_parameters(candidates, present, r.effect))),
+        )
+        for r in ranked
+    ]
     ranked.sort(key=lambda r: -r.evidence)
     # Search other maxima of the likelihood for competitive candidates.
     for i, r in enumerate(ranked):
         effects = (*present, r.effect)
         likely = max(policy.search.min_peaks_fraction * ranked[0].evidence, 0.0)
-        if many_peaks(effects) and r.evidence > likely and r.effect not in limits:
+        if many_peaks(effects) and r.evidence > likely and not np.isfinite(r.limit):
             solution = candidates.search_peaks(effects)
             ranked[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
     # Of two indistinguishable effects, prefer the later stage of the measuring chain.
@@ -248,20 +236,72 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     return sorted(ranked, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
 
-def _limits_below_leader(
-    candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
-) -> dict[str, float]:
-    """Upper limits of the gain, and thus evidence, of candidates that cannot lead, by name."""
-    policy = candidates.policy
-    candidates.look_all([(*present, name) for name in shown], base)
-    looked = {name: candidates.look((*present, name), base) for name in shown}
-    most = {
-        name: policy.search.linear_gain_factor * fitted.promised for name, fitted in looked.items()
-    }
-    gained = {name: likelihood_gain(looked[name].current_solution(), base) for name in shown}
-    ahead = sorted(shown, key=lambda name: -gained[name])[: policy.search.leaders]
-    leads = max(
-        (evidence(candidates, looked[n].current_solution(), base) for n in ahead), default=0.0
-    )
-    line = policy.search.rank_fraction * max(leads, 0.0) - policy.search.rank_margin
-    return {name: gain for name, gain in most.items() if gain < line}
+def _rank_in_groups(
+    candidates: Candidates, present: Names, shown: Sequence[str], base: Solution, follow: Follow
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Fit candidates approximately, in groups in descending order of their largest possible gain.
+
+    The evidence of a candidate is at most its likelihood gain, which is assumed not to exceed
+    `linear_gain_factor` times the gain of the linear model after a few evaluations. If `follow` is
+    `promising`, a candidate is skipped if this limit is too small for a tie with the largest
+    evidence of earlier groups. With many maxima of the likelihood, the limit is not known.
+
+    Returns
+    -------
+    dict, dict
+        Evidence after the approximate fit, and upper limit of the evidence of each skipped
+        candidate, by name.
+    """
+    policy, sets = candidates.policy, {name: (*present, name) for name in shown}
+    limits = dict.fromkeys(shown, np.inf)
+    if follow == "promising":
+        candidates.look_all([*sets.values()], base)
+        factor = policy.search.linear_gain_factor
+        for name in shown:
+            if not many_peaks((name,)):
+                limits[name] = factor * candidates.look(sets[name], base).promised
+    order = sorted(shown, key=lambda name: -limits[name])
+    approximate: dict[str, float] = {}
+    size = policy.search.group_size
+    for start in range(0, len(order), size):
+        least = max([0.0, *approximate.values()]) - policy.selection.tie
+        group = [name for name in order[start : start + size] if limits[name] > least]
+        candidates.rank_all([sets[name] for name in group], base)
+        approximate |= {n: evidence(candidates, candidates.rank(sets[n]), base) for n in group}
+    return approximate, {name: limits[name] for name in order if name not in approximate}
+
+
+def _converge_competitive(
+    candidates: Candidates,
+    present: Names,
+    approximate: dict[str, float],
+    base: Solution,
+    follow: Follow,
+) -> list[Ranked]:
+    """Converge the approximate fits that may have evidence.
+
+    If `follow` is `promising`, only those that may also lead, or tie with the leader.
+    """
+    policy, share = candidates.policy, candidates.independent_share(base)
+    limits = {}
+    for name, gain in approximate.items():
+        next_step = next_step_gain(candidates.rank((*present, name))) * share
+        limits[name] = gain + policy.search.step_gain_factor * next_step
+    least, ranked = 0.0, []
+    for name in sorted(limits, key=lambda name: -limits[name]):
+        solution, gain, limit = candidates.rank((*present, name)), approximate[name], np.inf
+        if limits[name] > least:
+            solution = candidates.converge((*present, name))
+            gain = evidence(candidates, solution, base)
+        elif gain <= 0.0 < limits[name]:
+            limit = limits[name]
+        if follow == "promising":
+            least = max(least, gain - policy.selection.tie)
+        ranked.append(Ranked(gain, name, solution, limit))
+    return ranked
+
+
+def _parameters(candidates: Candidates, present: Names, name: str) -> int:
+    """Number of parameters that an effect adds to the present model."""
+    fitted, base = candidates.fitted((*present, name)), candidates.fitted(present)
+    return len(fitted.problem.open) - len(base.problem.open)

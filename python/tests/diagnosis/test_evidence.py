@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import Array, assert_recovered, coulomb, four_runs
-from jbf import Diagnosis, Rig, Run
+from jbf import Diagnosis, Rig, Run, diagnose
 from jbf.diagnosis import Trial
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples
 from jbf.diagnosis.level import score_test
-from jbf.diagnosis.review import needed, weights
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.review import needed, reconsider, weights
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share, likelihood_gain, share_of_gain
 from jbf.estimation.noise import WHITE
@@ -69,6 +70,33 @@ def test_two_simulated_effects_are_added_in_successive_steps() -> None:
     assert found.steps[-1].rms == pytest.approx(0.1, rel=0.05)
     for name, true in (("sensor_offset.b", 0.5), ("quadratic_drag.c", 150.0)):
         assert_recovered(found.fit.parameters[name], true)
+
+
+@pytest.mark.parametrize("hidden", ["nothing", "offset and drag", "lag"])
+def test_fits_that_are_not_continued_do_not_change_the_diagnosis(hidden: str) -> None:
+    """With larger limits of the gain, every candidate with a sufficient score is ranked."""
+    found = linear_diagnosis(hidden)
+    larger = {"search.linear_gain_factor": 1e9, "search.step_gain_factor": 1e9}
+    policy = DEFAULT.with_values({**larger, "search.group_size": 100})
+    complete = diagnose(Rig(), linear_runs(hidden), law="coulomb", policy=policy)
+    assert (complete.verdict, complete.effects) == (found.verdict, found.effects)
+    skipped, skipped_in_complete = (
+        [t.effect for step in d.steps for t in step.trials if t.reason.startswith("skipped")]
+        for d in (found, complete)
+    )
+    assert skipped_in_complete == []
+    assert bool(skipped) == (hidden != "nothing")
+    for name, value in found.fit.parameters.items():
+        other = complete.fit.parameters[name]
+        assert value.value == pytest.approx(other.value, abs=0.1 * (value.stderr or 1e-9))
+
+
+def test_effect_is_exchanged_only_if_held_out_runs_are_predicted_as_well() -> None:
+    """A Stribeck excess that imitates a drag is exchanged for the drag."""
+    runs, wrong = linear_runs("offset and drag"), ("sensor_offset", "stribeck_excess")
+    assert reconsider(coulomb_candidates(runs), wrong) == ("sensor_offset", "quadratic_drag")
+    policy = DEFAULT.with_values({"held_out.no_worse_ratio": 0.5})
+    assert reconsider(coulomb_candidates(runs, policy), wrong) == wrong
 
 
 def test_effect_in_one_run_only_is_reported_as_residual_structure() -> None:

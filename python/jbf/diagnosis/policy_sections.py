@@ -140,7 +140,7 @@ class Search:
     )
     leaders: int = documented(
         3,
-        "number of candidates with the largest gains among which the leader is selected",
+        "number of candidates with the largest gains that are tested by independent units",
         "chosen for speed",
     )
     paired: int = documented(

@@ -244,7 +244,7 @@ def _rank_in_groups(
     The evidence of a candidate is at most its likelihood gain, which is assumed not to exceed
     `linear_gain_factor` times the gain of the linear model after a few evaluations. If `follow` is
     `promising`, a candidate is skipped if this limit is too small for a tie with the largest
-    evidence of earlier groups. With many maxima of the likelihood, the limit is not known.
+    evidence of earlier groups. An effect with many maxima of the likelihood has no such limit.
 
     Returns
     -------

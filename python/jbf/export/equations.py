@@ -357,7 +357,7 @@ sixth = whole * (2.0 * twice - 1.0)
 factor = (1.0 + stroke_dependence_a_1 * sine + stroke_dependence_a_2 * whole
           + stroke_dependence_a_3 * third + stroke_dependence_a_4 * twice
           + stroke_dependence_a_5 * fifth + stroke_dependence_a_6 * sixth)
-jump *= max(factor, 0.0)
+jump *= max(factor, 0.5) * (0.5 / max(1.0 - factor, 0.5))
 """,
     "pitch_ripple": _RIPPLE.format(e="pitch_ripple"),
     "pitch_ripple_2": _RIPPLE.format(e="pitch_ripple_2"),

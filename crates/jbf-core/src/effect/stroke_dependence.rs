@@ -1,4 +1,4 @@
-//! Dry friction that varies smoothly along the stroke: dry friction multiplied by `1 + s(x)`.
+//! Dry friction that varies smoothly along the stroke: dry friction multiplied by `q(s(x))`.
 //!
 //! Examples are a screw with more preload in its middle, a guide that is not straight, and a rod
 //! with local wear. The contact pressure, and with it the dry friction, varies slowly with the
@@ -8,6 +8,10 @@
 //! vanishes at both ends: `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`. Each wave has
 //! zero mean over the stroke, and the waves are orthogonal to each other and to the dry friction.
 //! Beyond the ends, friction is constant.
+//!
+//! The factor is `q = 1 + s` for `s >= -1/2` and `q = 1/(4 |s|)` below. It is positive, and its slope
+//! is continuous, so that the level at the ends of the stroke, which a fit extrapolates from the
+//! travel of its runs, cannot fall to zero.
 //!
 //! A fit places the ends slightly beyond the travel of its runs, because friction may still vary at
 //! the ends of a recording. The recorded travel then contains two and a half of the shortest waves.
@@ -36,8 +40,8 @@ described! {
     named_effect StrokeDependence = Info::new::<T, Self>("stroke_dependence", Stage::Contact)
         .summary("dry friction that varies smoothly along the stroke")
         .equation(
-            "F_dry -> F_dry (1 + sum of a_k w_k(u)), w_k = sin(k pi u/2) for k odd, cos(k pi u/2) for \
-             k even, u = (x - x_0)/h within -1 and 1",
+            "F_dry -> F_dry q, q = 1 + s for s >= -1/2, 1/(4 |s|) below, s = sum of a_k w_k(u), \
+             w_k = sin(k pi u/2) for k odd, cos(k pi u/2) for k even, u = (x - x_0)/h within -1 and 1",
         )
         .source("Armstrong-Helouvry 1991, chapter 3; Popovic & Goldenberg 1998")
         .limits(
@@ -100,6 +104,8 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
         for (size, wave) in self.sizes.iter().zip(waves) {
             factor += *size * wave;
         }
-        sliding.jump *= factor.max(T::ZERO);
+        // The quotient is one where the factor is at least one half.
+        let half = T::of(0.5);
+        sliding.jump *= factor.max(half) * (half / (T::ONE - factor).max(half));
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of dry friction multiplied by `1 + s(x)`, against Fourier terms over the stroke.
+//! Tests of dry friction that varies along the stroke, against Fourier terms over the stroke.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -21,7 +21,12 @@ fn share(a: [f64; 6], x: f64) -> f64 {
         (2.5 * PI * u).sin(),
         (3.0 * PI * u).cos(),
     ];
-    1.0 + a.iter().zip(waves).map(|(a, w)| a * w).sum::<f64>()
+    let s = a.iter().zip(waves).map(|(a, w)| a * w).sum::<f64>();
+    if s < -0.5 {
+        -0.25 / s
+    } else {
+        1.0 + s
+    }
 }
 
 fn values(a: [f64; 6]) -> [f64; 8] {
@@ -89,9 +94,21 @@ fn level_and_slope_are_continuous_at_the_ends_of_the_stroke() {
     assert!((level_n(a, MIDDLE_M + h) - level_n(a, MIDDLE_M - h)).abs() > 1e-5);
 }
 
-/// Dry friction is zero at positions where the terms would make it negative.
+/// A relative change below -1/2 leaves a positive level with a continuous slope.
 #[test]
-fn level_is_zero_if_the_terms_would_make_it_negative() {
-    assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0), 0.0);
-    assert!((level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], MIDDLE_M) - 3.0 * F_C_N).abs() < 1e-12);
+fn level_is_positive_where_the_terms_would_make_it_negative() {
+    let level = |s: f64| level_n([0.0, s, 0.0, 0.0, 0.0, 0.0], MIDDLE_M) / F_C_N;
+    for (s, expected) in [
+        (1.5, 2.5),
+        (-0.4, 0.6),
+        (-0.5, 0.5),
+        (-1.0, 0.25),
+        (-2.0, 0.125),
+    ] {
+        assert!((level(s) - expected).abs() < 1e-12, "{s}: {}", level(s));
+    }
+    let slope = |s: f64| (level(s + 1e-6) - level(s - 1e-6)) / 2e-6;
+    assert!((slope(-0.499) - 1.0).abs() < 1e-6);
+    assert!((slope(-0.501) - 1.0).abs() < 5e-3);
+    assert!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0) > 0.1 * F_C_N);
 }

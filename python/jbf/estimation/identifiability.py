@@ -2,7 +2,7 @@
 
 The value of a held parameter is used for prediction only and is not an estimate. A search may end
 at an arbitrary value of such a parameter. The value is therefore reset to a neutral one, unless the
-reset changes the prediction at the included samples.
+reset reduces the likelihood.
 """
 
 from __future__ import annotations
@@ -30,10 +30,11 @@ NOT_SEPARATE = "not identifiable: another parameter has the same effect in these
 NO_EFFECT = "at its null: no effect"
 ONE_SIDED = 2.0
 """Standard errors added to the value of a scale for its upper limit."""
-SAME_IN_NOISE = 1e-4
-"""Largest difference of predictions that are equivalent, as a fraction of the residual."""
+SAME_DEVIANCE = 0.1
+"""Largest increase of minus twice the log likelihood between equivalent values: a change of a
+parameter by a third of its standard error."""
 SAME_IN_FRICTION = 1e-9
-"""Largest difference of predictions that are equivalent, as a fraction of the friction."""
+"""Largest difference of predictions that are always equivalent, as a fraction of the friction."""
 SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force to which it is equal without a Stribeck peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
@@ -201,15 +202,16 @@ def _moved_towards(page: Parameter, value: float, target: float, share: float) -
 
 
 def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
-    """Residuals at these values if the predictions equal those of the solution, otherwise None."""
+    """Residuals at these values if they are as likely as those of the solution, otherwise None."""
     residuals = problem.residuals(values)
     samples = solution.samples
     gaps = [a - b for a, b in zip(residuals, solution.residuals, strict=True)]
     friction = [p.friction for p in problem.campaign.prepared]
-    allowed = SAME_IN_NOISE**2 * samples.square(solution.residuals)
-    allowed += SAME_IN_FRICTION**2 * samples.square(friction)
-    gap = samples.square(gaps)
-    return residuals if np.isfinite(gap) and gap <= allowed else None
+    if samples.square(gaps) <= SAME_IN_FRICTION**2 * samples.square(friction):
+        return residuals
+    # The cost of predictions that are not finite is not smaller than any limit.
+    loss = samples.cost(residuals, solution.noise) - solution.cost
+    return residuals if loss <= SAME_DEVIANCE else None
 
 
 def parameter_values(

@@ -48,7 +48,7 @@ NUMERICAL = {
         estimation.delays: RANK
         estimation.delayed_fits: SETTLED DELAY_STEP
         estimation.held_out: SHORT STRAIGHT NOTHING
-        estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
+        estimation.identifiability: SAME_DEVIANCE SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
         estimation.posterior_motions: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS

@@ -149,10 +149,6 @@ def _to_target(options: ExportOptions, target: str) -> int:
         )
     settings = options.settings
     if options.compensator_file is not None:
-        if target != "c":
-            raise InputError(
-                problem=f"the target {target} has no compensator", remedy="export with --to c"
-            )
         settings = replace(settings, compensator=Compensator.load(options.compensator_file))
     targets = {"--out": options.out, "--json": options.json}
     outputs.check(targets, outputs.inputs_in(options.model, options.runs, options.effects_from))

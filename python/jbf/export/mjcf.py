@@ -264,4 +264,5 @@ MJCF = Target(
     "friction of a MuJoCo joint: include file and test model",
     ".xml",
     write_mjcf,
+    ("joint", "mujoco"),
 )

@@ -208,4 +208,5 @@ PLAIN_C = Target(
     "C99 file and header without the core, for a controller",
     ".c",
     write_c,
+    ("joint", "precision", "compensator"),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields
 
 from jbf.errors import InputError
 from jbf.export.description import ISAAC, SDF, URDF
@@ -61,8 +62,8 @@ def to(
     Raises
     ------
     InputError
-        The target cannot represent the rig of the model, the runs lack a column, or the error
-        exceeds `max_loss`.
+        The target cannot represent the rig of the model or does not use a given setting, the runs
+        lack a column, or the error exceeds `max_loss`.
 
     Examples
     --------
@@ -77,6 +78,7 @@ def to(
     """
     model = the_model(model)
     chosen = TARGETS[one_of(target, TARGETS, "target")]
+    _check_settings(chosen, settings)
     reference = Reference.of(model, runs)
     written = chosen.write(reference, settings)
     ledger = Ledger(
@@ -94,3 +96,15 @@ def to(
             "(max_loss in Python)",
         )
     return Exported(chosen.name, dict(written.files), ledger)
+
+
+def _check_settings(target: Target, settings: Settings) -> None:
+    """Raise an InputError if a setting is given that the target does not use."""
+    for name in (field.name for field in fields(settings)):
+        given = getattr(settings, name) != getattr(DEFAULT, name)
+        if given and name not in target.options:
+            users = ", ".join(other.name for other in TARGETS.values() if name in other.options)
+            raise InputError(
+                problem=f"the target {target.name} does not use the setting {name}",
+                remedy=f"omit --{name} ({name} in Python), which is for {users}",
+            )

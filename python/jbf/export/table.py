@@ -228,4 +228,5 @@ TABLE = Target(
     "friction against speed for a drive (CSV, TwinCAT list), and a cogging map",
     ".csv",
     write_table,
+    ("points",),
 )

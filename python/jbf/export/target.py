@@ -98,12 +98,15 @@ class Target:
         Suffix of the main file, such as `.csv`.
     write
         Function that writes the files of a reference.
+    options
+        Names of the settings that the target uses.
     """
 
     name: str
     summary: str
     suffix: str
     write: Callable[[Reference, Settings], Written]
+    options: tuple[str, ...] = ("joint",)
 
 
 @dataclass(frozen=True, repr=False)

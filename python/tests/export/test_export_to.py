@@ -66,6 +66,19 @@ def test_unknown_target_is_refused_with_a_suggestion(model: jbf.Model) -> None:
         export.to(model, "tabel", joint_runs())
 
 
+@pytest.mark.parametrize(
+    ("target", "option", "value"),
+    [("st", "precision", "float"), ("c", "points", "12"), ("table", "joint", "elbow")],
+)
+def test_setting_that_the_target_does_not_use_is_refused(
+    saved: Path, capsys: Capture, target: str, option: str, value: str
+) -> None:
+    arguments = ["export", str(saved / "model.toml"), str(saved / "runs"), "--to", target]
+    assert main([*arguments, f"--{option}", value]) == 2
+    (line,) = capsys.readouterr().err.strip().split("\n")
+    assert f"the target {target} does not use the setting {option}" in line
+
+
 def test_runs_without_motion_are_refused(model: jbf.Model) -> None:
     time_s = np.arange(0.0, 1.0, 0.01)
     still = jbf.Run.from_arrays(time_s, np.zeros(100), angle_rad=np.zeros(100))

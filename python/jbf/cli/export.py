@@ -10,6 +10,7 @@ from jbf.cli.arguments import Commands, add_effects_from, add_json, command
 from jbf.cli.commands import COMMANDS
 from jbf.errors import InputError
 from jbf.export import TARGETS, Compensator, Settings, c, rust, to
+from jbf.export.registry import check_settings
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,7 @@ def run(options: ExportOptions) -> int:
             argument = "--" + name.removesuffix("_file").replace("_", "-")
             argument = "RUN" if name == "runs" else argument
             raise InputError(problem=f"{argument} is used with --to only", remedy="add --to TARGET")
+    check_settings(None, options.settings)
     targets = {"--rust": options.rust, "--c": options.c}
     if not any(targets.values()):
         raise InputError(
@@ -147,6 +149,7 @@ def _to_target(options: ExportOptions, target: str) -> int:
             problem="no run is given, and the loss of an export is computed along runs",
             remedy=f"name the runs of the model: jbf export {options.model} RUN... --to {target}",
         )
+    check_settings(target, options.settings)
     settings = options.settings
     if options.compensator_file is not None:
         settings = replace(settings, compensator=Compensator.load(options.compensator_file))

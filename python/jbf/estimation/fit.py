@@ -239,7 +239,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         fixed=tuple(name for name in problem.names if name in problem.fixed),
         findings=campaign.findings,
         noise_floor=noise_floor(campaign.prepared, solution.samples) or None,
-        loglik=log_likelihood(solution),
+        loglik=log_likelihood(replace(solution, values=reset.values, residuals=reset.residuals)),
         bounds=problem.bounds,
     )
 

@@ -1,8 +1,9 @@
 """Detection of parameters that are not identifiable; they are held fixed, with a reason.
 
-The value of a held parameter is used for prediction only and is not an estimate. A search may end
-at an arbitrary value of such a parameter. The value is therefore reset to a neutral one, unless the
-reset reduces the likelihood.
+The value of a held parameter is used for prediction only and is not an estimate. If the predictions
+do not depend on a parameter near the solution, the search may end at an arbitrary value. It is
+therefore reset to a neutral one, unless the deviance (minus twice the log likelihood) increases by
+more than `MAX_DEVIANCE_INCREASE`. Other held parameters keep the value at the end of the search.
 """
 
 from __future__ import annotations
@@ -25,21 +26,21 @@ HELD = "held at the given value"
 """Note of a parameter that was not fitted."""
 STATED = "not fitted: a given value, or a reference taken from the runs"
 """Note of a number that is given, or taken from the runs, and not fitted."""
-NEVER_MOVED = "not determined: these runs do not depend on it"
+NEVER_MOVED = "not determined by these runs"
 NOT_SEPARATE = "not identifiable: another parameter has the same effect in these runs"
 NO_EFFECT = "at its null: no effect"
 ONE_SIDED = 2.0
 """Standard errors added to the value of a scale for its upper limit."""
-SAME_DEVIANCE = 0.1
-"""Largest increase of minus twice the log likelihood between equivalent values: a change of a
-parameter by a third of its standard error."""
+MAX_DEVIANCE_INCREASE = 0.1
+"""Largest increase of the deviance due to all resets together. If the likelihood is quadratic, it
+corresponds to a change of one parameter by 0.32 standard errors."""
 SAME_IN_FRICTION = 1e-9
-"""Largest difference of predictions that are always equivalent, as a fraction of the friction."""
+"""RMS difference of equal predictions for records without noise, relative to the RMS friction."""
 SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force to which it is equal without a Stribeck peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
-"""Fractions of the distance to the neutral value by which a reset is tried. If the starting value
-itself changes the prediction, a partial reset may still give a less extreme value."""
+"""Fractions of the distance to the neutral value by which a reset is tried. If the neutral value
+itself is less likely, a partial reset may still give a less extreme value."""
 
 
 def reason_not_identifiable(
@@ -138,7 +139,7 @@ class Reset:
 def reset_unidentified(
     problem: Problem, solution: Solution, errors: StandardErrors, start: Mapping[str, float]
 ) -> Reset:
-    """Set effects without influence to their null, and unidentifiable parameters to neutral values.
+    """Set effects without influence to their null, and parameters without it to neutral values.
 
     `start` has the user's starting values by full name; the others are those of the catalogue.
     """
@@ -155,9 +156,9 @@ def reset_unidentified(
         for i in indices:
             name, page = problem.names[i], problem.parameters[problem.names[i]]
             trial[i] = start.get(name, page.starts[0]) if page.null is None else page.null
-        unchanged = _same(problem, solution, trial)
-        if unchanged is not None:
-            values, residuals = trial, unchanged
+        accepted = _equally_likely(problem, solution, trial)
+        if accepted is not None:
+            values, residuals = trial, accepted
             notes |= dict.fromkeys((problem.names[i] for i in indices), NO_EFFECT)
     for k, i in enumerate(problem.open):
         name = problem.names[i]
@@ -165,13 +166,13 @@ def reset_unidentified(
             continue
         page, value = problem.parameters[name], float(values[i])
         neutral = start.get(name, _neutral(problem, name, values))
-        notes[name] = f"not determined: the data exclude only {neutral:.3g}"
+        notes[name] = f"not determined: its neutral value, {neutral:.3g}, is less likely"
         for share in SHARES:
             trial = values.copy()
             trial[i] = _moved_towards(page, value, neutral, share)
-            unchanged = _same(problem, solution, trial)
-            if unchanged is not None:
-                values, residuals = trial, unchanged
+            accepted = _equally_likely(problem, solution, trial)
+            if accepted is not None:
+                values, residuals = trial, accepted
                 if share == 1.0:
                     notes[name] = NEVER_MOVED
                 break
@@ -201,17 +202,17 @@ def _moved_towards(page: Parameter, value: float, target: float, share: float) -
     return value + share * (target - value)
 
 
-def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
-    """Residuals at these values if they are as likely as those of the solution, otherwise None."""
+def _equally_likely(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
+    """Residuals at these values if the deviance increases by at most `MAX_DEVIANCE_INCREASE`."""
     residuals = problem.residuals(values)
     samples = solution.samples
     gaps = [a - b for a, b in zip(residuals, solution.residuals, strict=True)]
     friction = [p.friction for p in problem.campaign.prepared]
     if samples.square(gaps) <= SAME_IN_FRICTION**2 * samples.square(friction):
         return residuals
-    # The cost of predictions that are not finite is not smaller than any limit.
+    # The comparison is false for predictions that are not finite.
     loss = samples.cost(residuals, solution.noise) - solution.cost
-    return residuals if loss <= SAME_DEVIANCE else None
+    return residuals if loss <= MAX_DEVIANCE_INCREASE else None
 
 
 def parameter_values(

@@ -162,8 +162,12 @@ def write_isaac(reference: Reference, settings: Settings) -> Written:
     return Written(files, (law, *carried), form.force(reference), EVALUATED, tuple(notes))
 
 
-URDF = Target("urdf", "damping and friction of a URDF joint", ".urdf", write_urdf)
-SDF = Target("sdf", "damping and friction of an SDFormat joint", ".sdf", write_sdf)
+URDF = Target("urdf", "damping and friction of a URDF joint", ".urdf", write_urdf, ("joint",))
+SDF = Target("sdf", "damping and friction of an SDFormat joint", ".sdf", write_sdf, ("joint",))
 ISAAC = Target(
-    "isaac", "static, dynamic and viscous friction of an Isaac Lab actuator", ".py", write_isaac
+    "isaac",
+    "static, dynamic and viscous friction of an Isaac Lab actuator",
+    ".py",
+    write_isaac,
+    ("joint",),
 )

@@ -354,10 +354,10 @@ third = sine * (3.0 - 4.0 * square)
 twice = 2.0 * whole * whole - 1.0
 fifth = 2.0 * whole * third - sine
 sixth = whole * (2.0 * twice - 1.0)
-factor = (1.0 + stroke_dependence_a_1 * sine + stroke_dependence_a_2 * whole
+linear = (1.0 + stroke_dependence_a_1 * sine + stroke_dependence_a_2 * whole
           + stroke_dependence_a_3 * third + stroke_dependence_a_4 * twice
           + stroke_dependence_a_5 * fifth + stroke_dependence_a_6 * sixth)
-jump *= max(factor, 0.5) * (0.5 / max(1.0 - factor, 0.5))
+jump *= max(linear, 0.5) * (0.5 / max(1.0 - linear, 0.5))
 """,
     "pitch_ripple": _RIPPLE.format(e="pitch_ripple"),
     "pitch_ripple_2": _RIPPLE.format(e="pitch_ripple_2"),

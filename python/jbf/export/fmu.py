@@ -311,6 +311,6 @@ def _zipped(archive: dict[str, str]) -> bytes:
     return buffer.getvalue()
 
 
-OPTIONS = ("joint", "precision")
-FMU2 = Target("fmu2", "source-code FMU for FMI 2.0", ".fmu", write_fmu2, OPTIONS)
-FMU3 = Target("fmu3", "source-code FMU for FMI 3.0", ".fmu", write_fmu3, OPTIONS)
+FMU_SETTINGS = ("joint", "precision")
+FMU2 = Target("fmu2", "source-code FMU for FMI 2.0", ".fmu", write_fmu2, FMU_SETTINGS)
+FMU3 = Target("fmu3", "source-code FMU for FMI 3.0", ".fmu", write_fmu3, FMU_SETTINGS)

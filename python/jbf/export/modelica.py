@@ -234,4 +234,5 @@ MODELICA = Target(
     "Modelica package with the friction as a block of differential equations",
     ".mo",
     write_modelica,
+    ("joint",),
 )

@@ -62,7 +62,7 @@ def to(
     Raises
     ------
     InputError
-        The target cannot represent the rig of the model or does not use a given setting, the runs
+        The target cannot represent the rig of the model or does not use a changed setting, the runs
         lack a column, or the error exceeds `max_loss`.
 
     Examples
@@ -78,7 +78,7 @@ def to(
     """
     model = the_model(model)
     chosen = TARGETS[one_of(target, TARGETS, "target")]
-    _check_settings(chosen, settings)
+    check_settings(chosen.name, settings)
     reference = Reference.of(model, runs)
     written = chosen.write(reference, settings)
     ledger = Ledger(
@@ -98,13 +98,17 @@ def to(
     return Exported(chosen.name, dict(written.files), ledger)
 
 
-def _check_settings(target: Target, settings: Settings) -> None:
-    """Raise an InputError if a setting is given that the target does not use."""
+def check_settings(target: str | None, settings: Settings) -> None:
+    """Raise an InputError if a setting that the target does not use differs from its default.
+
+    The target is None for the exports that use the core, which have no settings.
+    """
+    used = () if target is None else TARGETS[target].settings
     for name in (field.name for field in fields(settings)):
-        given = getattr(settings, name) != getattr(DEFAULT, name)
-        if given and name not in target.options:
-            users = ", ".join(other.name for other in TARGETS.values() if name in other.options)
+        if getattr(settings, name) != getattr(DEFAULT, name) and name not in used:
+            users = ", ".join(other.name for other in TARGETS.values() if name in other.settings)
+            what = "an export without --to" if target is None else f"the target {target}"
             raise InputError(
-                problem=f"the target {target.name} does not use the setting {name}",
-                remedy=f"omit --{name} ({name} in Python), which is for {users}",
+                problem=f"{what} does not use the setting {name}",
+                remedy=f"omit --{name} ({name} in Python); it is used by {users}",
             )

@@ -292,5 +292,5 @@ def write_st(reference: Reference, settings: Settings) -> Written:
 
 
 STRUCTURED_TEXT = Target(
-    "st", "function block in Structured Text (IEC 61131-3) for a PLC", ".st", write_st
+    "st", "function block in Structured Text (IEC 61131-3) for a PLC", ".st", write_st, ("joint",)
 )

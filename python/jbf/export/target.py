@@ -29,18 +29,18 @@ Precision = Literal["double", "float"]
 
 @dataclass(frozen=True)
 class Settings:
-    """Options of the targets.
+    """Settings of the targets. A target refuses a changed setting that it does not use.
 
     Attributes
     ----------
     points
         Largest number of points of a table, both directions together.
     joint
-        Name of the joint in a simulator.
+        Name of the joint in a simulator, and prefix of the names in code.
     mujoco
         Version of MuJoCo whose elements may be used.
     precision
-        Floating-point type of C code.
+        Floating-point type of C code and of an FMU.
     compensator
         Settings of the compensator in the C code; None for the friction model alone.
     """
@@ -98,15 +98,15 @@ class Target:
         Suffix of the main file, such as `.csv`.
     write
         Function that writes the files of a reference.
-    options
-        Names of the settings that the target uses.
+    settings
+        Names of the fields of `Settings` that the target uses.
     """
 
     name: str
     summary: str
     suffix: str
     write: Callable[[Reference, Settings], Written]
-    options: tuple[str, ...] = ("joint",)
+    settings: tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False)

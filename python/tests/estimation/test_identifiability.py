@@ -163,7 +163,7 @@ def moved_back(
         (0.0, 20.0, 4.0, 10.0**1.5),
     ],
 )
-def test_parameter_is_moved_towards_its_start_as_far_as_predictions_stay_equal(
+def test_parameter_is_moved_towards_its_start_as_far_as_the_likelihood_permits(
     walled: Walled, wall_p: float, wall_q: float, there_p: float, there_q: float
 ) -> None:
     p, q, notes = moved_back(walled(1.0, wall_p, wall_q), 900.0, 100.0)
@@ -178,7 +178,7 @@ def test_parameter_without_influence_returns_to_the_start_value_of_the_user(wall
 
 
 @pytest.mark.parametrize(("increase", "same"), [(0.08, True), (0.12, False)])
-def test_values_are_equivalent_up_to_an_increase_of_the_deviance_by_a_tenth(
+def test_parameter_is_reset_if_the_deviance_increases_by_at_most_0_1(
     walled: Walled, increase: float, same: bool
 ) -> None:
     residual = np.concatenate([r.friction - 5.0 * np.sign(r.velocity) for r in RUNS])

@@ -1,6 +1,7 @@
 """Export of a model to a target: ledger, limit of the loss, command, JSON."""
 
 import json
+from dataclasses import fields
 from pathlib import Path
 
 import jbf
@@ -77,6 +78,21 @@ def test_setting_that_the_target_does_not_use_is_refused(
     assert main([*arguments, f"--{option}", value]) == 2
     (line,) = capsys.readouterr().err.strip().split("\n")
     assert f"the target {target} does not use the setting {option}" in line
+
+
+def test_setting_of_a_target_is_refused_by_the_export_for_the_core(
+    saved: Path, capsys: Capture
+) -> None:
+    out = saved / "friction.h"
+    arguments = ["export", str(saved / "model.toml"), "--c", str(out), "--precision", "float"]
+    assert main(arguments) == 2
+    assert "does not use the setting precision" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_settings_of_the_targets_exist() -> None:
+    names = {field.name for field in fields(export.Settings)}
+    assert {name for target in export.TARGETS.values() for name in target.settings} == names
 
 
 def test_runs_without_motion_are_refused(model: jbf.Model) -> None:

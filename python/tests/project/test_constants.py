@@ -19,6 +19,7 @@ NUMERICAL = {
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.directions: DECOY_DRAWS SURE
+        estimation.identifiability: MAX_DEVIANCE_INCREASE
         diagnosis.experiment_design.excitations: MOST_SAMPLES RATES_RAD_S SHARES STOP_SHARES REST_S
         diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S REACH
         diagnosis.experiment_design.next_run: LEAST_SAMPLES
@@ -48,7 +49,7 @@ NUMERICAL = {
         estimation.delays: RANK
         estimation.delayed_fits: SETTLED DELAY_STEP
         estimation.held_out: SHORT STRAIGHT NOTHING
-        estimation.identifiability: SAME_DEVIANCE SAME_IN_FRICTION
+        estimation.identifiability: SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
         estimation.posterior_motions: EXACT_RECORD RATIO_STEP
         estimation.problem: BOUNDLESS

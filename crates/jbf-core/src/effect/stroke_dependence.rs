@@ -1,4 +1,4 @@
-//! Dry friction that varies smoothly along the stroke: dry friction multiplied by `q(s(x))`.
+//! Dry friction that varies smoothly along the stroke, by a positive factor of the position.
 //!
 //! Examples are a screw with more preload in its middle, a guide that is not straight, and a rod
 //! with local wear. The contact pressure, and with it the dry friction, varies slowly with the
@@ -6,12 +6,12 @@
 //!
 //! With `u` from -1 to 1 over the stroke, `s` is the sum of the first six waves whose slope
 //! vanishes at both ends: `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`. Each wave has
-//! zero mean over the stroke, and the waves are orthogonal to each other and to the dry friction.
+//! zero mean over the stroke, and the waves are orthogonal to each other and to a constant.
 //! Beyond the ends, friction is constant.
 //!
-//! The factor is `q = 1 + s` for `s >= -1/2` and `q = 1/(4 |s|)` below. It is positive, and its slope
-//! is continuous, so that the level at the ends of the stroke, which a fit extrapolates from the
-//! travel of its runs, cannot fall to zero.
+//! The factor is `q = 1 + s` if `s >= -1/2`, and `q = 1/(4 |s|)` otherwise. It is positive and has a
+//! continuous slope. With `1 + s` alone, dry friction could vanish at the ends of the stroke, which
+//! lie beyond the travel of the fitted runs.
 //!
 //! A fit places the ends slightly beyond the travel of its runs, because friction may still vary at
 //! the ends of a recording. The recorded travel then contains two and a half of the shortest waves.
@@ -40,13 +40,14 @@ described! {
     named_effect StrokeDependence = Info::new::<T, Self>("stroke_dependence", Stage::Contact)
         .summary("dry friction that varies smoothly along the stroke")
         .equation(
-            "F_dry -> F_dry q, q = 1 + s for s >= -1/2, 1/(4 |s|) below, s = sum of a_k w_k(u), \
+            "F_dry -> q F_dry with q = 1 + s if s >= -1/2, otherwise 1/(4 |s|); s = sum of a_k w_k(u), \
              w_k = sin(k pi u/2) for k odd, cos(k pi u/2) for k even, u = (x - x_0)/h within -1 and 1",
         )
         .source("Armstrong-Helouvry 1991, chapter 3; Popovic & Goldenberg 1998")
         .limits(
-            "variations over less than a fifth of the stroke are smoothed; constant beyond \
-             the ends; the position must be absolute or have the same zero in every run",
+            "variations over less than a fifth of the stroke are smoothed; a decrease by more than \
+             half is compressed; constant beyond the ends; the position must be absolute or have \
+             the same zero in every run",
         )
         .needs(&[Need::NoFilm, Need::Position]);
     a_1 = "a_1", "-", "half a wave: upper end higher than lower end", [-2.0, 2.0], [0.1] null(0.0) .signed();
@@ -100,12 +101,12 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
         let fifth = T::of(2.0) * whole * third - sine;
         let sixth = whole * (T::of(2.0) * twice - T::ONE);
         let waves = [sine, whole, third, twice, fifth, sixth];
-        let mut factor = T::ONE;
+        let mut linear = T::ONE;
         for (size, wave) in self.sizes.iter().zip(waves) {
-            factor += *size * wave;
+            linear += *size * wave;
         }
-        // The quotient is one where the factor is at least one half.
+        // 1 + s, or 1/2 times 1/2 divided by |s|: the term that is not used equals 1/2.
         let half = T::of(0.5);
-        sliding.jump *= factor.max(half) * (half / (T::ONE - factor).max(half));
+        sliding.jump *= half.max(linear) * (half / (T::ONE - linear).max(half));
     }
 }

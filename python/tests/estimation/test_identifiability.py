@@ -190,6 +190,21 @@ def test_parameter_is_reset_if_the_deviance_increases_by_at_most_0_1(
     assert (p == 4.0) == same
 
 
+def test_likelihood_of_a_fit_is_that_of_its_residuals_after_a_reset(walled: Walled) -> None:
+    residual = np.concatenate([r.friction - 5.0 * np.sign(r.velocity) for r in RUNS])
+    jump = 2.0 * np.mean(residual) + 0.005 * np.std(residual)
+    problem = Problem(Campaign.prepare(Rig(), RUNS), walled(jump, 500.0, 0.0), "journal", ())
+    values = np.array([5.0, 900.0, 1.0])
+    solution = problem.solution(values, problem.campaign.samples, WHITE)
+    found = finish(problem, solution)
+    assert found.params["p"] == 4.0
+    after = np.concatenate(found.residuals)
+    assert not np.allclose(after, np.concatenate(solution.residuals))
+    n = len(after)
+    gaussian = -0.5 * n * (np.log(2.0 * np.pi * np.mean(after**2)) + 1.0)
+    assert found.loglik == pytest.approx(gaussian, abs=1e-6)
+
+
 SCALE = Parameter("v_s", lower=1e-7, upper=1e3, starts=(0.01,), log=True)
 PLAIN = Parameter("F_v", lower=0.0, upper=1e7, starts=(10.0,))
 SIGNED = Parameter("b", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))

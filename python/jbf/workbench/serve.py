@@ -8,12 +8,16 @@ import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from jbf.errors import InputError
 from jbf.workbench import vendored
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import keep, load, save_changes
+
+if TYPE_CHECKING:
+    import uvicorn
 
 HOST = "127.0.0.1"
 
@@ -41,11 +45,17 @@ def listening(port: int) -> socket.socket:
 
 
 @contextmanager
-def _ended_by_signals() -> Iterator[None]:
-    """Convert a request of the system to terminate to `SystemExit`, so that all is cleaned up."""
+def _ended_by_signals(server: uvicorn.Server) -> Iterator[None]:
+    """Stop the server at SIGTERM or SIGHUP, and raise `SystemExit` when it has stopped.
+
+    An exception within the handler would be raised at any place of the event loop, where a
+    request or a callback can catch it.
+    """
+    received: list[int] = []
 
     def end(number: int, _: object) -> None:
-        raise SystemExit(128 + number)
+        received.append(number)
+        server.should_exit = True
 
     names = ("SIGTERM", "SIGHUP") if threading.current_thread() is threading.main_thread() else ()
     numbers = [number for name in names if (number := getattr(signal, name, None)) is not None]
@@ -58,6 +68,8 @@ def _ended_by_signals() -> Iterator[None]:
     finally:
         for number in ended_by:
             signal.signal(number, signal.SIG_DFL)
+    if received:
+        raise SystemExit(128 + received[0])
 
 
 def _saved(session: Session) -> list[str]:
@@ -129,11 +141,12 @@ def serve(
             lifespan="off",
             timeout_graceful_shutdown=1,
         )
-        # The fragment of an address is sent to no server and appears in no log.
-        opened(f"http://{HOST}:{at}/#token={token}")
+        server = uvicorn.Server(config)
         try:
-            with _ended_by_signals():
-                uvicorn.Server(config).run(sockets=[listener])
+            with _ended_by_signals(server):
+                # The fragment of an address is sent to no server and appears in no log.
+                opened(f"http://{HOST}:{at}/#token={token}")
+                server.run(sockets=[listener])
         finally:
             for sentence in _saved(session):
                 ended(sentence)

@@ -5,10 +5,12 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +72,30 @@ def test_signal_during_a_fit_ends_the_process_quietly(tmp_path: Path, name: str)
     assert list(tmp_path.glob(KEPT)) == []
     # Nothing was changed, so that no session is written.
     assert not (tmp_path / FILE).exists()
+
+
+def test_signal_during_requests_ends_the_process_quietly(tmp_path: Path) -> None:
+    ended = threading.Event()
+
+    def request() -> None:
+        while not ended.is_set():
+            with suppress(OSError, HTTPException):
+                ask("state")
+
+    with started(tmp_path, "--demo") as (process, ask):
+        clients = [threading.Thread(target=request) for _ in range(3)]
+        for client in clients:
+            client.start()
+        time.sleep(0.5)
+        try:
+            process.send_signal(signal.SIGHUP)
+            _, complaints = process.communicate(timeout=60.0)
+        finally:
+            ended.set()
+            for client in clients:
+                client.join()
+    assert process.returncode == 128 + signal.SIGHUP
+    assert complaints.strip() in ("", "jbf: interrupted")
 
 
 def test_changes_are_saved_at_the_end_and_return_in_the_next_session(tmp_path: Path) -> None:

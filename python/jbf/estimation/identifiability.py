@@ -26,7 +26,7 @@ HELD = "held at the given value"
 """Note of a parameter that was not fitted."""
 STATED = "not fitted: a given value, or a reference taken from the runs"
 """Note of a number that is given, or taken from the runs, and not fitted."""
-NEVER_MOVED = "not determined by these runs"
+NOT_DETERMINED = "not determined by these runs"
 NOT_SEPARATE = "not identifiable: another parameter has the same effect in these runs"
 NO_EFFECT = "at its null: no effect"
 ONE_SIDED = 2.0
@@ -35,7 +35,9 @@ MAX_DEVIANCE_INCREASE = 0.1
 """Largest increase of the deviance due to all resets together. If the likelihood is quadratic, it
 corresponds to a change of one parameter by 0.32 standard errors."""
 SAME_IN_FRICTION = 1e-9
-"""RMS difference of equal predictions for records without noise, relative to the RMS friction."""
+"""RMS difference of predictions, relative to the RMS friction, below which they are equal.
+
+It decides for records without noise, where any difference changes the likelihood."""
 SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force to which it is equal without a Stribeck peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
@@ -53,7 +55,7 @@ def reason_not_identifiable(
     whether it can be distinguished from all other parameters.
     """
     if not sensitive:
-        return NEVER_MOVED
+        return NOT_DETERMINED
     note = bound_note(page, value, error)
     if note is None and not separate:
         note = NOT_SEPARATE
@@ -174,7 +176,7 @@ def reset_unidentified(
             if accepted is not None:
                 values, residuals = trial, accepted
                 if share == 1.0:
-                    notes[name] = NEVER_MOVED
+                    notes[name] = NOT_DETERMINED
                 break
     return Reset(values, residuals, notes)
 

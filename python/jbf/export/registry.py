@@ -62,8 +62,8 @@ def to(
     Raises
     ------
     InputError
-        The target cannot represent the rig of the model or does not use a changed setting, the runs
-        lack a column, or the error exceeds `max_loss`.
+        The target cannot represent the rig of the model or does not use a setting that
+        differs from its default, the runs lack a column, or the error exceeds `max_loss`.
 
     Examples
     --------

@@ -29,7 +29,7 @@ Precision = Literal["double", "float"]
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the targets. A target refuses a changed setting that it does not use.
+    """Settings of the targets. A target refuses a setting that it does not use if it was changed.
 
     Attributes
     ----------

@@ -14,8 +14,8 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
 from jbf.estimation.identifiability import (
     HELD,
-    NEVER_MOVED,
     NO_EFFECT,
+    NOT_DETERMINED,
     NOT_SEPARATE,
     at_null,
     idle_effects,
@@ -46,11 +46,11 @@ def notes_of(fitted: Fit) -> dict[str, str]:
 
 def test_breakaway_force_without_influence_is_held_at_the_sliding_force() -> None:
     found = fit(Rig(), RUNS, law="coulomb")
-    assert notes_of(found) == {"F_s": NEVER_MOVED}
+    assert notes_of(found) == {"F_s": NOT_DETERMINED}
     assert found.parameters["F_s"].value == found.parameters["F_c"].value
     assert found.parameters["F_c"].value == pytest.approx(LAW["F_c"], abs=0.03)
     given = fit(Rig(), RUNS, law="coulomb", start={"F_s": 8.0})
-    assert given.parameters["F_s"] == ParameterValue(8.0, None, NEVER_MOVED, held=True)
+    assert given.parameters["F_s"] == ParameterValue(8.0, None, NOT_DETERMINED, held=True)
 
 
 def test_fixed_parameter_is_held_at_the_value_given_by_the_user() -> None:
@@ -66,7 +66,7 @@ def test_only_confounded_parameters_and_those_without_influence_are_held() -> No
     notes = notes_of(found)
     # The last point of the search in its flat valley determines which of two notes is given.
     assert notes["v_s"] == NOT_SEPARATE or "exceeds its value" in notes["v_s"]
-    assert notes["gamma_s"] == notes["k_t"] == NEVER_MOVED
+    assert notes["gamma_s"] == notes["k_t"] == NOT_DETERMINED
     friction = found.parameters["F_c"]
     assert abs(friction.value - LAW["F_c"]) < 3.0 * friction.stderr < 0.3
 
@@ -108,7 +108,7 @@ def test_parameters_of_an_effect_at_its_null_are_held(effect: str, values: Any, 
     problem = Problem(Campaign.prepare(Rig(), RUNS), "coulomb", "journal", [effect])
     here = np.array([ended_at[name] for name in problem.names])
     found = finish(problem, problem.solution(here, problem.samples_at(here), WHITE))
-    wanted = {"F_s": NEVER_MOVED} | {f"{effect}.{n}": NO_EFFECT for n in values}
+    wanted = {"F_s": NOT_DETERMINED} | {f"{effect}.{n}": NO_EFFECT for n in values}
     assert notes_of(found) == wanted
     assert {n: found.parameters[f"{effect}.{n}"].value for n in values} == put
 
@@ -169,12 +169,12 @@ def test_parameter_is_moved_towards_its_start_as_far_as_the_likelihood_permits(
     p, q, notes = moved_back(walled(1.0, wall_p, wall_q), 900.0, 100.0)
     assert (p, q) == pytest.approx((there_p, there_q))
     home = {"p": there_p == 4.0, "q": there_q == 0.01}
-    assert {name: note == NEVER_MOVED for name, note in notes.items()} == home
+    assert {name: note == NOT_DETERMINED for name, note in notes.items()} == home
 
 
 def test_parameter_without_influence_returns_to_the_start_value_of_the_user(walled: Walled) -> None:
     p, _, notes = moved_back(walled(1.0, 0.0, 0.0), 0.7, 1.0, {"p": 0.1})
-    assert (p, notes["p"]) == (0.1, NEVER_MOVED)
+    assert (p, notes["p"]) == (0.1, NOT_DETERMINED)
 
 
 @pytest.mark.parametrize(("increase", "same"), [(0.08, True), (0.12, False)])
@@ -281,7 +281,7 @@ def test_scale_below_its_error_is_reported_with_an_upper_limit_of_two_errors(
 
 
 def test_parameter_without_influence_or_confounded_is_not_determined() -> None:
-    assert reason_not_identifiable(SCALE, 1e-7, math.nan, sensitive=False) == NEVER_MOVED
+    assert reason_not_identifiable(SCALE, 1e-7, math.nan, sensitive=False) == NOT_DETERMINED
     assert reason_not_identifiable(PLAIN, 9.9, 0.1, separate=False) == NOT_SEPARATE
 
 

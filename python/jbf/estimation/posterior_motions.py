@@ -171,15 +171,16 @@ def corrected_delay_s(campaign: Campaign) -> float:
 def delay_of_further_runs_s(campaign: Campaign) -> float:
     """Return the corrected delay of the force that a further run is expected to have, s.
 
-    It is the delay common to all runs plus the median of the delays that were corrected run by run.
+    It is the delay common to all runs. Delays that differ between the runs are errors of their
+    recordings.
     """
-    runs = [p.run.name for p in campaign.prepared]
+    common_s, runs = corrected_delay_s(campaign), [p.run.name for p in campaign.prepared]
     if len(runs) == 1:
         # The delay of a single run is the common one.
-        return corrected_delay_s(campaign)
+        return common_s
     own_s = {f.run: f.size for f in campaign.more_findings if f.kind == LATE}
-    median_s = float(np.median([own_s.get(run, 0.0) for run in runs]))
-    return corrected_delay_s(campaign) + median_s
+    delays_s = [own_s.get(run, 0.0) for run in runs]
+    return common_s + delays_s[0] if np.ptp(delays_s) == 0.0 else common_s
 
 
 def shifted(first: Problem, delay_s: float) -> Problem:

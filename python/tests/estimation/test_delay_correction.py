@@ -215,6 +215,8 @@ def test_delay_of_a_single_run_is_not_corrected_outside_the_model() -> None:
 def test_force_that_leads_the_motion_in_all_runs_is_corrected() -> None:
     again = corrected(*fitted(reversing_campaign((-6e-3,) * 4)))
     np.testing.assert_allclose(sizes(again, "late_channel"), -6e-3, atol=0.6e-3)
+    # A further run has the delay that all runs have in common.
+    assert finish(*fitted(again)).model.force_delay_s == pytest.approx(-6e-3, abs=0.6e-3)
 
 
 def test_noise_that_grows_with_the_force_is_not_corrected_as_a_delay() -> None:

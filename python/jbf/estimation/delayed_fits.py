@@ -109,7 +109,7 @@ def fits_on_clocks(
         return fits
     start = _likeliest_delay(first.thinned, fits[0].solution, at_once)
     if first.thinned is not first:
-        start = _likeliest_of(first, fits[0].solution, np.array([start.delay_s]), at_once)
+        start = _likeliest_of(first, fits[0].solution, [start.delay_s], at_once)
     delay_s, sd_s = _fixed_point_delay(start)
     tested = [k for k in tested if abs(delay_s - clocks_s[k]) >= settings.min_delay_sigma * sd_s]
     if not tested:
@@ -141,37 +141,82 @@ def likeliest(
     return min((fit for fit in fits if fit.solution.rms <= most), key=deviance)
 
 
-def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> DelayedFit:
-    """Return the likeliest of several delays of the force, half a sampling interval apart.
+def _possible_delays_s(problem: Problem, solution: Solution) -> list[float]:
+    """Delays at local minima of the plain sum of squares, the smallest minimum first, s.
 
-    The force of an abrupt motion is not linear in a delay, so that several are tried; selected runs
-    suffice for that (`Problem.thinned`). If the likeliest delay is the longest one of its sign, the
-    range is doubled for this sign, up to a share of the shortest run.
+    The delays are half a sampling interval apart. The other parameters are fitted in linear
+    approximation: prediction and Jacobian are interpolated at the delayed instants, a quarter of an
+    interval from a sample, so that all are smoothed equally. All delays have the same readings.
     """
-    settings, step_s = first.campaign.settings, _shortest_step_s(first)
-    shortest_run_s = min(p.run.duration_s for p in first.campaign.prepared)
-    range_s = settings.motion.delay_range_samples * step_s
-    tried_s = np.arange(0.25 * step_s - range_s, range_s, 0.5 * step_s)
+    settings, step_s = problem.campaign.settings, _shortest_step_s(problem)
+    near, runs = near_solution(problem, solution), problem.campaign.prepared
+    longest_s = min(
+        settings.motion.delay_range_samples * step_s,
+        settings.delays.max_run_share * min(p.run.duration_s for p in runs),
+    )
+    parts = []
+    for p, residual, jacobian, weight in zip(
+        runs, near.residuals, near.jacobian, near.samples.weight, strict=True
+    ):
+        time_s = p.run.time_s
+        used = (time_s >= time_s[0] + longest_s) & (time_s <= time_s[-1] - longest_s)
+        used &= weight > 0.0
+        columns = np.column_stack([p.friction - residual, jacobian])
+        parts.append((time_s, columns, time_s[used], p.friction[used], weight[used]))
+
+    def square(delay_s: float) -> float:
+        """Sum of squares at a delay of the force, s."""
+        rows = []
+        for time_s, columns, used_s, force, weight in parts:
+            predicted = _interpolated(used_s - delay_s, time_s, columns)
+            predicted[:, 0] -= force
+            rows.append(weight[:, None] * predicted)
+        both = np.concatenate(rows)
+        return unexplained_square(both[:, 1:], both[:, 0])
+
+    count = int(longest_s / (0.5 * step_s))
+    delays_s = step_s * (0.5 * np.arange(-count, count) + 0.25)
+    squares = np.array([square(float(delay_s)) for delay_s in delays_s])
+    inner = squares[1:-1]
+    minima = 1 + np.flatnonzero((inner < squares[:-2]) & (inner < squares[2:]))
+    smallest = minima[np.argsort(squares[minima])][: settings.motion.max_delay_minima]
+    return [float(delays_s[k]) for k in smallest]
+
+
+def _interpolated(instants_s: Array, time_s: Array, columns: Array) -> Array:
+    """Interpolate the columns of a table linearly from the times `time_s` to other instants."""
+    place = np.interp(instants_s, time_s, np.arange(len(time_s), dtype=float))
+    before = np.minimum(place.astype(np.intp), len(time_s) - 2)
+    share = (place - before)[:, None]
+    interpolated: Array = (1.0 - share) * columns[before] + share * columns[before + 1]
+    return interpolated
+
+
+def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> DelayedFit:
+    """Return the likeliest of several delays of the force.
+
+    The force of an abrupt motion is not linear in a delay, so that several are tried: those with a
+    local minimum of the sum of squares, two next to zero, and two next to the likeliest of these.
+    Selected runs suffice for that (`Problem.thinned`).
+    """
+    step_s = _shortest_step_s(first)
+    near_zero_s = [-0.25 * step_s, 0.25 * step_s]
+    tried_s = sorted({*near_zero_s, *_possible_delays_s(first, solution)})
     best = _likeliest_of(first, solution, tried_s, at_once)
-    for _ in range(settings.motion.max_delay_doublings):
-        is_longest = abs(best.delay_s) > range_s - 0.5 * step_s
-        if not is_longest or 2.0 * range_s > settings.delays.max_run_share * shortest_run_s:
-            break
-        longer_s = np.arange(range_s + 0.25 * step_s, 2.0 * range_s, 0.5 * step_s)
-        tried_s = np.array([best.delay_s, *np.copysign(longer_s, best.delay_s)])
-        range_s *= 2.0
-        best = _likeliest_of(first, best.solution, tried_s, at_once)
-    return best
+    tried_s = [best.delay_s + k * step_s for k in (-0.5, 0.0, 0.5)]
+    return _likeliest_of(first, best.solution, tried_s, at_once)
 
 
-def _likeliest_of(first: Problem, solution: Solution, tried_s: Array, at_once: int) -> DelayedFit:
+def _likeliest_of(
+    first: Problem, solution: Solution, tried_s: Sequence[float], at_once: int
+) -> DelayedFit:
     """Return the likeliest of the delays `tried_s`, compared at the same readings."""
     beyond_s = (0.5 * MAX_BRACKETS + 1.0) * _shortest_step_s(first)
     margin_s = float(np.max(np.abs(tried_s))) + beyond_s
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
     fits = in_parallel(
         lambda delay_s: fit_with_delay(readings, solution, delay_s, rounds=1),
-        tried_s.tolist(),
+        tried_s,
         at_once,
     )
     return likeliest(fits)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy import optimize
+from scipy import optimize, special
 
 from jbf.arrays import Array
 from jbf.estimation.campaign import Campaign
@@ -261,15 +261,17 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         unit = at(log_ratio, 0.0).whitening(weights)
         squares = unit.deviance(solution.residuals) - unit.log_determinant
 
-        def penalised(log_noise: float) -> float:
-            """Penalised deviance at the logarithm of noise / RMS."""
-            deviance = squares * float(np.exp(-2.0 * log_noise)) + 2.0 * count * log_noise
-            prior = ((log_ratio + log_noise) / settings.scale_prior) ** 2
-            return deviance + unit.log_determinant + prior
-
+        # With y = count / precision + log_ratio + log_noise, the derivative is zero at the solution
+        # of y exp(2 y) = constant. The Wright omega function w(z) solves w + log(w) = z.
+        precision = settings.scale_prior**-2
+        offset = count / precision + log_ratio
+        z = 2.0 * offset + np.log(max(2.0 * squares / precision, 1e-300))
+        log_noise = 0.5 * float(special.wrightomega(z)) - offset
         bounds = max(lowest, -MOST_SCALE - log_ratio), min(MOST_NOISE, MOST_SCALE - log_ratio)
-        found = optimize.minimize_scalar(penalised, bounds=bounds, method="bounded")
-        return float(found.fun), float(found.x)
+        log_noise = float(np.clip(log_noise, *bounds))
+        deviance = squares * float(np.exp(-2.0 * log_noise)) + 2.0 * count * log_noise
+        prior = precision * (log_ratio + log_noise) ** 2
+        return deviance + unit.log_determinant + prior, log_noise
 
     # A second minimum exists at low noise, where the motion's errors explain the whole residual.
     log_ratios = np.linspace(-MOST_SCALE - MOST_NOISE, MOST_SCALE - lowest, RATIOS + 2)

@@ -330,9 +330,11 @@ class MotionSettings:
         "1 in 2 million for Gaussian noise",
     )
     delay_range_samples: float = documented(
-        2.0, "range of the search for this delay, in shortest sampling intervals", "convention"
+        16.0, "range of the search for this delay, in shortest sampling intervals", "convention"
     )
-    max_delay_doublings: int = documented(3, "doublings of delay_range_samples", "convention")
+    max_delay_minima: int = documented(
+        3, "delays with a minimum of the sum of squares that are compared", "convention"
+    )
     max_clock_deviance: float = documented(
         9.0,
         "difference of the deviance up to which the clock of the force is not identifiable",

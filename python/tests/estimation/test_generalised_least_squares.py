@@ -85,7 +85,7 @@ def moves_from_rest(delay_s: float, step_s: float) -> Run:
     return Run.from_arrays(time_s, None, force, position_m=counted, name="moves")
 
 
-@pytest.mark.parametrize("delay", [-0.6, 0.3, 0.7])
+@pytest.mark.parametrize("delay", [-0.6, 0.3, 0.7, -5.3])
 def test_delay_of_the_force_is_found_from_abrupt_moves(delay: float) -> None:
     """Unit: samples of 10 ms. Friction is not linear in a delay where a move begins abruptly."""
     found = fit(Rig(), [moves_from_rest(delay * 0.01, 0.01)], ["inertia"], law="coulomb")

@@ -33,12 +33,20 @@ Ask = Callable[..., dict[str, Any]]
 
 @contextmanager
 def started(folder: Path, *more: str) -> Iterator[tuple[subprocess.Popen[str], Ask]]:
-    """Process of `jbf workbench FOLDER`, and a function that sends a request to it."""
+    """Process of `jbf workbench FOLDER`, and a function that sends a request to it.
+
+    The process handles SIGINT and SIGHUP although the tests may run where they are ignored (nohup).
+    """
+
+    def handle_signals() -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
     process = subprocess.Popen(
         [sys.executable, "-m", "jbf", "workbench", str(folder), "--no-browser", *more],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "TMPDIR": str(folder)},
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        preexec_fn=handle_signals,
     )  # fmt: skip
     assert process.stdout is not None
     address, token = process.stdout.readline().strip().split("/#token=")

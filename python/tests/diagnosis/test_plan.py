@@ -67,6 +67,7 @@ def worth(information: Array, laws: int, prices: Array) -> float:
     return float(np.sum(np.log1p(np.minimum(times, 4.0)) + 0.05 * np.log(np.maximum(times, 4.0))))
 
 
+@pytest.mark.extended
 def test_each_run_of_a_plan_is_the_best_addition_to_the_runs_before_it() -> None:
     """The criterion is the information of the plan plus that without its most informative run."""
     motions = candidate_runs()
@@ -200,7 +201,7 @@ def test_plan_command_writes_runs_that_the_power_command_reads(
     ("options", "limit_m", "source"),
     [
         (["--travel", "150 mm"], 0.15, "given"),
-        (["--travel", "0.15"], 0.15, "given"),
+        pytest.param(["--travel", "0.15"], 0.15, "given", marks=pytest.mark.extended),
         ([], 0.2, "recorded"),
     ],
 )

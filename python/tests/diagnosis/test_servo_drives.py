@@ -42,7 +42,7 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
     ("seed", "machine"),
     [
         pytest.param(4014, {"inertia"}, id="point to point, tachometer"),
-        pytest.param(4017, {"sensor_offset", "inertia"}, id="hand, late force"),
+        pytest.param(4017, {"sensor_offset", "inertia"}, id="hand, late force", marks=EXTENDED),
         pytest.param(4030, {"inertia"}, id="saturated steps, command", marks=EXTENDED),
         pytest.param(4032, {"inertia", "gravity"}, id="swinging, position alone"),
         pytest.param(
@@ -52,7 +52,9 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
         pytest.param(4828, {"inertia"}, id="steps, 97 Hz, position alone"),
         pytest.param(4851, {"inertia"}, id="point to point, force late by 0.71 samples"),
         pytest.param(4860, {"inertia", "gravity"}, id="exponential starts, smoothing bias"),
-        pytest.param(4936, {"inertia", "gravity"}, id="soft controller, abrupt reversals"),
+        pytest.param(
+            4936, {"inertia", "gravity"}, id="soft controller, abrupt reversals", marks=EXTENDED
+        ),
     ],
 )
 def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) -> None:
@@ -65,8 +67,8 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
 @pytest.mark.parametrize(
     ("seed", "effect"),
     [
-        (4049, "cogging"),
-        (4045, "viscous_thinning"),
+        pytest.param(4049, "cogging", marks=EXTENDED),
+        pytest.param(4045, "viscous_thinning", marks=EXTENDED),
         (4315, "torque_proportional"),
         # Large errors of the motion explain a late force, and are likelier than the delay.
         (4925, "pitch_ripple"),
@@ -96,7 +98,9 @@ def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
         # Ordinary least squares has its minimum at a dry friction of zero.
         (4813, "viscous_thinning", {"F_c": "coulomb"}),
         # Ordinary least squares of errors of the acceleration has its minimum at another pitch.
-        (4748, "cogging", {"cogging.A": "amplitude", "cogging.pitch": "pitch"}),
+        pytest.param(
+            4748, "cogging", {"cogging.A": "amplitude", "cogging.pitch": "pitch"}, marks=EXTENDED
+        ),
     ],
 )
 def test_fit_of_a_drive_finds_the_simulated_parameters_from_all_starting_values(

@@ -134,6 +134,7 @@ def test_start_and_fixed_values_outside_the_bounds_are_rejected(runs: list[Run])
             fit(Rig(), runs, law="coulomb", bounds={"F_c": (1.0, 4.0)}, **arguments)
 
 
+@pytest.mark.extended
 def test_bootstrap_covariance_contains_the_scatter_of_repeated_fits(runs: list[Run]) -> None:
     found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0}, cov_type="bootstrap")
     again = jbf.bootstrap(fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0}), runs)

@@ -48,6 +48,7 @@ def errors_of(runs: list[Run]) -> dict[str, float]:
     return {n: (p.value - TRUE[n]) / (p.stderr or np.nan) for n, p in parameters.items()}
 
 
+@pytest.mark.extended
 def test_parameters_of_a_drive_with_a_coarse_encoder_are_within_their_errors() -> None:
     errors = np.array([list(errors_of([drive(seed)]).values()) for seed in range(8)])
     assert np.max(np.abs(errors)) < 4.0
@@ -215,7 +216,10 @@ def presliding_run(seed: int, deflection: float, count: float) -> Run:
     return Run.from_arrays(time[read], None, force, position_m=counted, name=f"dahl_{seed}")
 
 
-@pytest.mark.parametrize(("deflection", "count"), [(5e-3, 1e-4), (5e-3, 1.5e-3)])
+@pytest.mark.parametrize(
+    ("deflection", "count"),
+    [(5e-3, 1e-4), pytest.param(5e-3, 1.5e-3, marks=pytest.mark.extended)],
+)
 def test_presliding_is_not_taken_for_errors_of_the_motion(deflection: float, count: float) -> None:
     """Corners of the motion can imitate presliding, with residuals many times as large."""
     runs = [presliding_run(seed, deflection, count) for seed in (1, 2)]

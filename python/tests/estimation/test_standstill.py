@@ -14,9 +14,9 @@ from point_to_point import BREAKAWAY_N, COULOMB_N, TRUTH, point_to_point
     ("law", "effects", "options"),
     [
         ("coulomb", ["inertia"], {}),
-        ("stribeck", ["inertia"], {}),
+        pytest.param("stribeck", ["inertia"], {}, marks=pytest.mark.extended),
         ("coulomb", ["inertia", "sensor_offset"], {"bias_n": 5.0}),
-        ("coulomb", ["inertia"], {"integral_1_s": 8.0}),
+        pytest.param("coulomb", ["inertia"], {"integral_1_s": 8.0}, marks=pytest.mark.extended),
     ],
     ids=["held", "held, stribeck", "held against a load", "creeping under an integral controller"],
 )
@@ -41,7 +41,7 @@ def held_with(run: Run, force_n: float) -> Run:
     return replace(run, friction=np.where(resting, force_n, 0.0) + run.friction)
 
 
-@pytest.mark.parametrize("force_n", [-2.0, 0.5])
+@pytest.mark.parametrize("force_n", [-2.0, pytest.param(0.5, marks=pytest.mark.extended)])
 def test_holding_force_changes_neither_the_fit_nor_the_residual(force_n: float) -> None:
     runs = point_to_point([4, 5], duration_s=10.0)
     others = [held_with(run, force_n) for run in runs]

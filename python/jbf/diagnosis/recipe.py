@@ -55,7 +55,7 @@ from jbf.diagnosis.which_law import (
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
-from jbf.estimation.posterior_motions import corrected_for_delay
+from jbf.estimation.posterior_motions import aligned, delays_by_run_s
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock
@@ -236,13 +236,15 @@ def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], mar
 def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
     """Held-out RMS of the final models of several diagnoses on common samples, unit of the force.
 
-    It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS.
+    It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS. The
+    force of each run is corrected for the delay of each diagnosis.
     """
-    delays_s = [answer.model.force_delay_s for answer in answers]
-    margin_s = max(abs(delay_s) for delay_s in delays_s)
+    runs = [p.run.name for p in recorded.prepared]
+    delays_s = [delays_by_run_s(runs, answer.fit.findings) for answer in answers]
+    margin_s = max(abs(delay_s) for of_runs_s in delays_s for delay_s in of_runs_s.tolist())
     compared = [
-        compare_prepared(answer.model, corrected_for_delay(recorded, delay_s, margin_s))
-        for answer, delay_s in zip(answers, delays_s, strict=True)
+        compare_prepared(answer.model, aligned(recorded, of_runs_s, margin_s))
+        for answer, of_runs_s in zip(answers, delays_s, strict=True)
     ]
     samples = compared[0].samples
     for comparison in compared:

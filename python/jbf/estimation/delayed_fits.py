@@ -18,7 +18,7 @@ from scipy import optimize
 from jbf.arrays import Array
 from jbf.estimation.delays import delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
-from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.least_squares import triangular, unexplained_square
 from jbf.estimation.minimum import huber
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
@@ -141,12 +141,13 @@ def likeliest(
     return min((fit for fit in fits if fit.solution.rms <= most), key=deviance)
 
 
-def _possible_delays_s(problem: Problem, solution: Solution) -> list[float]:
-    """Delays at local minima of the plain sum of squares, the smallest minimum first, s.
+def _delays_at_minima_s(problem: Problem, solution: Solution) -> list[float]:
+    """Delays at the smallest local minima of the sum of squares, s; at most `max_delay_minima`.
 
-    The delays are half a sampling interval apart. The other parameters are fitted in linear
-    approximation: prediction and Jacobian are interpolated at the delayed instants, a quarter of an
-    interval from a sample, so that all are smoothed equally. All delays have the same readings.
+    The delays are half a sampling interval apart, and the sum has the same readings for all of
+    them. The other parameters are fitted in linear approximation: prediction and Jacobian are
+    interpolated at the delayed instants. If the sampling is uniform, these are a quarter of an
+    interval from a sample, so that the interpolation smooths all of them equally.
     """
     settings, step_s = problem.campaign.settings, _shortest_step_s(problem)
     near, runs = near_solution(problem, solution), problem.campaign.prepared
@@ -166,19 +167,19 @@ def _possible_delays_s(problem: Problem, solution: Solution) -> list[float]:
 
     def square(delay_s: float) -> float:
         """Sum of squares at a delay of the force, s."""
-        rows = []
+        residuals, slopes = [], []
         for time_s, columns, used_s, force, weight in parts:
-            predicted = _interpolated(used_s - delay_s, time_s, columns)
-            predicted[:, 0] -= force
-            rows.append(weight[:, None] * predicted)
-        both = np.concatenate(rows)
-        return unexplained_square(both[:, 1:], both[:, 0])
+            rows = _interpolated(used_s - delay_s, time_s, columns)
+            reduced = triangular(weight * (rows[:, 0] - force), weight[:, None] * rows[:, 1:])
+            residuals.append(reduced[0])
+            slopes.append(reduced[1])
+        return unexplained_square(np.concatenate(slopes), np.concatenate(residuals))
 
     count = int(longest_s / (0.5 * step_s))
     delays_s = step_s * (0.5 * np.arange(-count, count) + 0.25)
     squares = np.array([square(float(delay_s)) for delay_s in delays_s])
-    inner = squares[1:-1]
-    minima = 1 + np.flatnonzero((inner < squares[:-2]) & (inner < squares[2:]))
+    around = np.pad(squares, 1, constant_values=np.inf)
+    minima = np.flatnonzero((squares <= around[:-2]) & (squares < around[2:]))
     smallest = minima[np.argsort(squares[minima])][: settings.motion.max_delay_minima]
     return [float(delays_s[k]) for k in smallest]
 
@@ -201,7 +202,7 @@ def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> Delaye
     """
     step_s = _shortest_step_s(first)
     near_zero_s = [-0.25 * step_s, 0.25 * step_s]
-    tried_s = sorted({*near_zero_s, *_possible_delays_s(first, solution)})
+    tried_s = sorted({*near_zero_s, *_delays_at_minima_s(first, solution)})
     best = _likeliest_of(first, solution, tried_s, at_once)
     tried_s = [best.delay_s + k * step_s for k in (-0.5, 0.0, 0.5)]
     return _likeliest_of(first, best.solution, tried_s, at_once)

@@ -168,24 +168,41 @@ def corrected_delay_s(campaign: Campaign) -> float:
     return sum(f.size for f in _corrected(campaign))
 
 
+def delays_by_run_s(runs: Sequence[str], findings: Sequence[Finding]) -> Array:
+    """Return the corrected delay of the force of each run, s, from the findings of a fit."""
+    late_s = {f.run: f.size for f in findings if f.kind == LATE}
+    common_s = late_s.pop(", ".join(runs), 0.0)
+    return np.array([common_s + late_s.get(run, 0.0) for run in runs])
+
+
 def delay_of_further_runs_s(campaign: Campaign) -> float:
     """Return the corrected delay of the force that a further run is expected to have, s.
 
-    It is the delay common to all runs. Delays that differ between the runs are errors of their
-    recordings.
+    It is the delay common to all runs, plus the delay corrected run by run if that is the same in
+    every run. Delays that differ are attributed to the recordings and not predicted.
     """
-    common_s, runs = corrected_delay_s(campaign), [p.run.name for p in campaign.prepared]
-    if len(runs) == 1:
-        # The delay of a single run is the common one.
-        return common_s
-    own_s = {f.run: f.size for f in campaign.more_findings if f.kind == LATE}
-    delays_s = [own_s.get(run, 0.0) for run in runs]
-    return common_s + delays_s[0] if np.ptp(delays_s) == 0.0 else common_s
+    delays_s = delays_by_run_s([p.run.name for p in campaign.prepared], campaign.more_findings)
+    # Delays that do not differ significantly have been replaced by their mean.
+    return float(delays_s[0]) if np.ptp(delays_s) == 0.0 else corrected_delay_s(campaign)
 
 
 def shifted(first: Problem, delay_s: float) -> Problem:
     """Return the problem with the force of each run shifted to earlier times by `delay_s`."""
     return first.with_campaign(corrected_for_delay(first.campaign, delay_s))
+
+
+def aligned(before: Campaign, delays_s: Array, margin_s: float = 0.0) -> Campaign:
+    """Shift the force of each run to earlier times by its delay.
+
+    Readings within `margin_s` of the start or the end of a motion are dropped before the shift. All
+    delays up to this size then have the same readings.
+    """
+    prepared = before.prepared
+    if margin_s > 0.0:
+        prepared = tuple(p.shifted(0.0, 0.0, margin_s) for p in prepared)
+    shifts = zip(prepared, delays_s.tolist(), strict=True)
+    prepared = tuple(p if delay_s == 0.0 else p.shifted(delay_s, 0.0) for p, delay_s in shifts)
+    return replace(before, prepared=prepared, samples=Samples.of(prepared, before.settings))
 
 
 def corrected_for_delay(before: Campaign, delay_s: float, margin_s: float = 0.0) -> Campaign:
@@ -195,16 +212,11 @@ def corrected_for_delay(before: Campaign, delay_s: float, margin_s: float = 0.0)
     within `margin_s` of the start or the end of a motion are dropped before the shift. All delays
     up to this size then have the same readings.
     """
-    prepared = before.prepared
-    if margin_s > 0.0:
-        prepared = tuple(p.shifted(0.0, 0.0, margin_s) for p in prepared)
-    if delay_s != 0.0:
-        prepared = tuple(p.shifted(delay_s, 0.0) for p in prepared)
     corrected = _corrected(before)
     total_s = delay_s + sum(f.size for f in corrected)
     others = tuple(f for f in before.more_findings if f not in corrected)
-    samples = Samples.of(prepared, before.settings)
-    campaign = replace(before, prepared=prepared, samples=samples, more_findings=others)
+    delays_s = np.full(len(before.prepared), delay_s)
+    campaign = replace(aligned(before, delays_s, margin_s), more_findings=others)
     if total_s == 0.0:
         return campaign
     side = "late" if total_s > 0.0 else "early"
@@ -253,7 +265,9 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         return replace(motion, noise=most * float(np.exp(log_noise)), scale=scale)
 
     def profiled(log_ratio: float) -> tuple[float, float]:
-        """Smallest penalised deviance for a logarithm of scale / noise, and that of noise / RMS.
+        """Smallest penalised deviance for a logarithm of scale / noise, and where it occurs.
+
+        The second result is the logarithm of noise / RMS.
 
         The filter depends on the ratio only, and the deviance is convex in the logarithm of the
         noise.
@@ -261,8 +275,9 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         unit = at(log_ratio, 0.0).whitening(weights)
         squares = unit.deviance(solution.residuals) - unit.log_determinant
 
-        # With y = count / precision + log_ratio + log_noise, the derivative is zero at the solution
-        # of y exp(2 y) = constant. The Wright omega function w(z) solves w + log(w) = z.
+        # The derivative is zero where y exp(2 y) = (squares / precision) exp(2 offset), with
+        # y = offset + log_noise. With w = 2 y, this is w + log(w) = z, whose solution is the
+        # Wright omega function.
         precision = settings.scale_prior**-2
         offset = count / precision + log_ratio
         z = 2.0 * offset + np.log(max(2.0 * squares / precision, 1e-300))

@@ -330,10 +330,10 @@ class MotionSettings:
         "1 in 2 million for Gaussian noise",
     )
     delay_range_samples: float = documented(
-        16.0, "range of the search for this delay, in shortest sampling intervals", "convention"
+        16.0, "largest delay searched, of either sign, in shortest sampling intervals", "convention"
     )
     max_delay_minima: int = documented(
-        3, "delays with a minimum of the sum of squares that are compared", "convention"
+        3, "local minima of the sum of squares at which this delay is fitted", "convention"
     )
     max_clock_deviance: float = documented(
         9.0,

@@ -181,9 +181,10 @@ class Model(Shown):
     def force_delay_s(self) -> float:
         """Delay of the recorded force in a further run, s; zero if the fit found none.
 
-        It is the delay common to the fitted runs, negative for an early force. It is a property of
-        the logger: `predict` and :func:`jbf.compare` apply it to every run, exports do not. Delays
-        that differ between runs are not predicted. See `delay` for the effect `time_delay`.
+        It is the delay that all fitted runs have in common, negative for an early force. It is a
+        property of the logger: `predict` and :func:`jbf.compare` apply it to every run, exports do
+        not. Delays that differ between runs are not predicted. See `delay` for the effect
+        `time_delay`.
         """
         return float(self.fit.get("force_delay_s", 0.0))
 

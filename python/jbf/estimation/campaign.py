@@ -287,7 +287,7 @@ class Campaign:
         """Radius that converts an angle to a path, m; 1 for a drive."""
         return 1.0 if self.rig.bearing is None else self.rig.bearing.radius_m
 
-    @property
+    @cached_property
     def moving(self) -> list[tuple[Prepared, Mask]]:
         """The runs, each with the mask of the included samples in motion.
 

@@ -110,7 +110,8 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     """Hold out each run in turn (with many runs, groups of runs), and predict it from the others.
 
     A parameter that the remaining runs do not identify is held at its null (or its starting value).
-    Information that only the held-out run contains must not leak into its prediction. With
+    Information that only the held-out run contains must not leak into its prediction, except that
+    the bounds of the parameters are those for all runs. With
     a single run, two halves of alternate parts are held out in turn.
     """
     count = len(problem.campaign.prepared)
@@ -168,7 +169,7 @@ def held_out_halves(
         of_half = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
         identified = _identified(solution, squares, (others + of_half)[None])
         held = _held(problem, ~identified)
-        part = _with_held(problem, problem.campaign, held)
+        part = problem.restricted(problem.campaign, held)
         values = _fitted(part, kept, _at(problem, solution, held), solution)
         residuals = tuple(problem.residuals(values, [run]))
         parts.append(HeldOutPart((run,), (half,), identified, residuals))
@@ -228,7 +229,7 @@ def _predicted(
             residuals = problem.residuals(step, group)
             if _straight(solution, step_x, group, residuals):
                 return residuals
-    part = _with_held(problem, problem.campaign.only(rest), held)
+    part = problem.restricted(problem.campaign.only(rest), held)
     kept = solution.samples.only(rest)
     if step is not None:
         # The solution of a law that fits badly is not a reliable starting point.
@@ -273,12 +274,6 @@ def _groups(campaign: Campaign) -> list[list[int]]:
     )
     folds = min(campaign.settings.held_out.max_folds, len(order))
     return [sorted(order[k::folds]) for k in range(folds)]
-
-
-def _with_held(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
-    """Return the problem for another campaign with more parameters held fixed."""
-    fixed = {**problem.fixed, **held}
-    return Problem(campaign, problem.law, problem.clock, problem.effects, fixed, problem.bounds)
 
 
 def _held(problem: Problem, unidentified: Mask) -> dict[str, float]:

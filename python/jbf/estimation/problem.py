@@ -213,6 +213,17 @@ class Problem:
             vars(problem).pop(cached, None)
         return problem
 
+    def restricted(self, campaign: Campaign, fixed: Mapping[str, float]) -> Problem:
+        """Return the problem for another campaign, with further parameters fixed.
+
+        Bounds and starting values are those of this problem. The values in `fixed` must be those of
+        the starting point of a search.
+        """
+        problem = self.with_campaign(campaign)
+        problem.best, problem.fixed = Best(), {**self.fixed, **fixed}
+        problem.open = [i for i, name in enumerate(self.names) if name not in problem.fixed]
+        return problem
+
     def _runs(self, selection: Sequence[int] | None) -> Sequence[Prepared]:
         """Prepared runs with the indices in `selection`; all if it is None."""
         runs = self.campaign.prepared

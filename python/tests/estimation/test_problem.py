@@ -34,6 +34,21 @@ def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
     np.testing.assert_allclose(problem.decode(problem.encode(values), values), values)
 
 
+def test_problem_with_more_fixed_parameters_keeps_bounds_and_has_its_own_best_values() -> None:
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1))
+    problem = Problem(campaign, "stribeck", "journal", ["sensor_offset"], {"delta": 1.5})
+    # The bound of the breakaway force and the starting values depend on the runs.
+    fixed = problem.restricted(campaign.only([0, 2]), {OFFSET: 0.3})
+    free = {problem.names[i] for i in problem.open}
+    assert {fixed.names[i] for i in fixed.open} == free - {OFFSET}
+    assert fixed.fixed[OFFSET] == 0.3
+    assert fixed.parameters == problem.parameters
+    values = problem.starts({})[0]
+    fixed.best.update(values, 1.0)
+    assert problem.best.values is None
+    assert len(fixed.residuals(values)) == 2
+
+
 def test_decode_returns_fixed_parameters_of_the_base_and_clips_at_bounds(problem: Problem) -> None:
     values, base = values_of(problem), values_of(problem, F_s=9.0)
     x = problem.encode(values)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -48,11 +49,16 @@ def errors_of_motion(model: Model) -> Proposal | None:
     weights_before, weights_after = _common_weights((campaign, reference), (again.campaign, after))
     gain = old.whitening(weights_before).deviance(reference.residuals)
     gain -= new.whitening(weights_after).deviance(after.residuals)
-    held_out = _held_out_deviance(model.reference_problem, reference, old, weights_before)
-    held_out -= _held_out_deviance(again, after, new, weights_after)
+
+    @cache
+    def held_out_gain() -> float:
+        """Increase of twice the log density of held-out runs, computed once if it is needed."""
+        deviance = _held_out_deviance(model.reference_problem, reference, old, weights_before)
+        return deviance - _held_out_deviance(again, after, new, weights_after)
+
     lacking = len(model.reference_problem.effects) - len(again.effects)
     price = price_of_term(model.policy, 2) - lacking * model.price_of_effect
-    return Proposal(with_errors, again, after, gain, price, held_out)
+    return Proposal(with_errors, again, after, gain, price, held_out_gain)
 
 
 def _held_out_deviance(

@@ -36,8 +36,9 @@ class Proposal:
         Increase of twice the log marginal likelihood of the independent samples.
     price
         Threshold for the gain, less the thresholds of the effects that the term replaces.
-    held_out_gain
-        Increase of twice the log density of held-out runs; None if held-out errors are compared.
+    compute_held_out_gain
+        Function that returns the increase of twice the log density of held-out runs; None for terms
+        that are judged by the RMS errors of held-out runs instead.
     """
 
     campaign: Campaign
@@ -45,7 +46,7 @@ class Proposal:
     solution: Solution
     gain: float
     price: float
-    held_out_gain: float | None = None
+    compute_held_out_gain: Callable[[], float] | None = None
 
     @property
     def evidence(self) -> float:
@@ -122,8 +123,8 @@ def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0
     """
     if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False
-    if proposal.held_out_gain is not None:
-        return proposal.held_out_gain >= 0.0
+    if proposal.compute_held_out_gain is not None:
+        return proposal.compute_held_out_gain() >= 0.0
     fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
         np.array([np.sqrt(np.mean(e**2)) if len(e) else np.nan for e in held_out_by_run(*fit)])

@@ -46,27 +46,28 @@ def listening(port: int) -> socket.socket:
 
 @contextmanager
 def _ended_by_signals(server: uvicorn.Server) -> Iterator[None]:
-    """Stop the server at SIGTERM or SIGHUP, and raise `SystemExit` when it has stopped.
+    """Stop the server at SIGTERM or SIGHUP; then raise `SystemExit` with 128 + the first signal.
 
-    An exception within the handler would be raised at any place of the event loop, where a
-    request or a callback can catch it.
+    A second signal stops it without waiting for requests. The handler itself does not raise: the
+    exception would appear wherever the event loop happens to be, and a request could catch it.
     """
     received: list[int] = []
 
     def end(number: int, _: object) -> None:
+        server.force_exit = bool(received)
         received.append(number)
         server.should_exit = True
 
     names = ("SIGTERM", "SIGHUP") if threading.current_thread() is threading.main_thread() else ()
     numbers = [number for name in names if (number := getattr(signal, name, None)) is not None]
     # A signal that is ignored (nohup) remains ignored.
-    ended_by = [n for n in numbers if signal.getsignal(n) is signal.SIG_DFL]
-    for number in ended_by:
+    handled = [n for n in numbers if signal.getsignal(n) is signal.SIG_DFL]
+    for number in handled:
         signal.signal(number, end)
     try:
         yield
     finally:
-        for number in ended_by:
+        for number in handled:
             signal.signal(number, signal.SIG_DFL)
     if received:
         raise SystemExit(128 + received[0])

@@ -35,7 +35,8 @@ Ask = Callable[..., dict[str, Any]]
 def started(folder: Path, *more: str) -> Iterator[tuple[subprocess.Popen[str], Ask]]:
     """Process of `jbf workbench FOLDER`, and a function that sends a request to it.
 
-    The process handles SIGINT and SIGHUP although the tests may run where they are ignored (nohup).
+    The process handles SIGINT and SIGHUP although the tests may run where they are ignored
+    (nohup, background jobs).
     """
 
     def handle_signals() -> None:
@@ -83,19 +84,21 @@ def test_signal_during_a_fit_ends_the_process_quietly(tmp_path: Path, name: str)
 
 
 def test_signal_during_requests_ends_the_process_quietly(tmp_path: Path) -> None:
-    ended = threading.Event()
+    ended, answered = threading.Event(), threading.Semaphore(0)
 
     def request() -> None:
         while not ended.is_set():
             with suppress(OSError, HTTPException):
                 ask("state")
+                answered.release()
 
     with started(tmp_path, "--demo") as (process, ask):
         clients = [threading.Thread(target=request) for _ in range(3)]
         for client in clients:
             client.start()
-        time.sleep(0.5)
         try:
+            for _ in range(20):
+                assert answered.acquire(timeout=60.0)
             process.send_signal(signal.SIGHUP)
             _, complaints = process.communicate(timeout=60.0)
         finally:

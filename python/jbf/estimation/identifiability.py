@@ -37,7 +37,7 @@ corresponds to a change of one parameter by 0.32 standard errors."""
 SAME_IN_FRICTION = 1e-9
 """RMS difference of predictions, relative to the RMS friction, below which they are equal.
 
-It decides for records without noise, where any difference changes the likelihood."""
+It matters only for records without noise, where any difference changes the likelihood."""
 SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force to which it is equal without a Stribeck peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)

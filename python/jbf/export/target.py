@@ -29,7 +29,7 @@ Precision = Literal["double", "float"]
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the targets. A target refuses a setting that it does not use if it was changed.
+    """Settings of the targets. A target refuses settings that it does not use.
 
     Attributes
     ----------

@@ -25,6 +25,7 @@ from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delays import drift_step
 from jbf.estimation.fit import finish
+from jbf.estimation.posterior_motions import aligned, delays_by_run_s
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.settings import DEFAULT as SETTINGS
@@ -159,6 +160,12 @@ def test_delays_that_differ_between_runs_are_corrected_and_reported() -> None:
     assert there[1].rms == pytest.approx(NOISE_N, rel=0.1)
     assert fitted(problem.campaign)[1].rms > 5.0 * there[1].rms
     assert corrected(*there) is None
+    # The same recording is aligned by the delays that the findings state.
+    delays_s = delays_by_run_s([p.run.name for p in again.prepared], again.findings)
+    np.testing.assert_array_equal(delays_s, sizes(again, "late_channel"))
+    for p, q in zip(aligned(problem.campaign, delays_s).prepared, again.prepared, strict=True):
+        np.testing.assert_array_equal(p.run.time_s, q.run.time_s)
+        np.testing.assert_array_equal(p.friction, q.friction)
     # A further run has none of these delays.
     assert finish(*there).model.force_delay_s == 0.0
 

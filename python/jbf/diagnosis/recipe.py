@@ -205,7 +205,7 @@ def _diagnose(
                 raise
             raise Stopped(best.fit) from None
         if best is not None:
-            before, after = _held_out_errors((best, answer), recorded)
+            before, after = held_out_errors((best, answer), recorded)
             if after >= before / margin:
                 continue
         best = answer
@@ -233,7 +233,7 @@ def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], mar
     return alone[law] < alone[best.model.law] * improved / margin
 
 
-def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
+def held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
     """Held-out RMS of the final models of several diagnoses on common samples, unit of the force.
 
     It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS. The

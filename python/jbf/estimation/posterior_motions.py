@@ -208,9 +208,8 @@ def aligned(before: Campaign, delays_s: Array, margin_s: float = 0.0) -> Campaig
 def corrected_for_delay(before: Campaign, delay_s: float, margin_s: float = 0.0) -> Campaign:
     """Correct a delay of the force: shift the force of each run to earlier times by `delay_s`.
 
-    The finding states the total delay, including one that has already been corrected. Readings
-    within `margin_s` of the start or the end of a motion are dropped before the shift. All delays
-    up to this size then have the same readings.
+    The finding states the total delay, including one that has already been corrected. `margin_s` is
+    as in `aligned`.
     """
     corrected = _corrected(before)
     total_s = delay_s + sum(f.size for f in corrected)

@@ -6,9 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import Array
+from delayed_runs import NOISE_N, reversing_campaign
 from golden import golden, golden_campaign
 from jbf import Diagnosis, Drive, Rig, Run, diagnose
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.recipe import held_out_errors
 from jbf.diagnosis.which_law import HeldOut, LawTried, compared, followed
 from jbf.estimation.campaign import Campaign
 
@@ -154,3 +156,10 @@ def test_stribeck_curve_that_rises_is_selected_if_no_effect_predicts_as_well() -
     assert (found.verdict, found.model.law) == ("adequate", "stribeck")
     values = {name: found.fit.parameters[name].value for name in ("F_c", "F_s", "F_v")}
     assert values == pytest.approx({"F_c": 8.0, "F_s": 4.0, "F_v": 6.0}, rel=0.03)
+
+
+def test_diagnoses_are_compared_with_the_own_delay_of_each_run() -> None:
+    """Without a correction, these delays increase the error thirtyfold."""
+    campaign = reversing_campaign((0.0, 0.02, -0.012, 0.007))
+    found = diagnose(Rig(), [p.run for p in campaign.prepared], law="coulomb")
+    assert held_out_errors([found, found], campaign) == [pytest.approx(NOISE_N, rel=0.05)] * 2

@@ -59,6 +59,16 @@ def test_quantisation_step_of_a_rounded_path_is_recovered_at_any_speed(step: flo
         assert quantum_of(np.round(path + 7.0, 9)) == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("digits", [7, 9])
+def test_quantisation_step_is_recovered_from_a_file_with_few_digits(digits: int) -> None:
+    """The digits round positions of several turns by up to a fiftieth of the encoder's step."""
+    step = 2.0 * np.pi / 4096.0
+    time_s = np.arange(0.0, 20.0, STEP_S)
+    angle = quantised(10.0 + 40.0 * np.sin(0.7 * time_s) + 5.0 * np.sin(3.1 * time_s), step)
+    written = np.array([float(f"{value:.{digits}g}") for value in angle])
+    assert quantum_of(written) == pytest.approx(step, rel=1e-4)
+
+
 def test_no_quantisation_step_is_estimated_from_noise_two_levels_or_exact_ramps() -> None:
     assert quantum_of(path_of(TIME_S)) == 0.0
     assert quantum_of(white(400, 3, 1.0)) == 0.0

@@ -10,8 +10,9 @@ from jbf.arrays import Array
 
 MIN_NOISE_RATIO = 3.0
 """Minimum ratio of local to usual noise for a local estimate of heteroscedastic noise."""
-DIGITS = 1e-7
-"""Share of the range of a signal below which changes are rounding to the digits of a file."""
+DIGITS = (1e-7, 1e-6, 1e-5)
+"""Shares of the range of a signal that are tried as the limit below which changes are rounding to
+the digits of a file."""
 LEVELS = 10
 """Minimum number of different values of a quantised signal."""
 MIN_ALTERNATING_SHARE, MIN_SIZES = 0.1, 6
@@ -88,20 +89,47 @@ def quantum_of(signal: Array) -> float:
     if len(np.unique(signal)) < LEVELS:
         return 0.0
     bends = np.diff(signal, 2)
-    bends = bends[np.abs(bends) > DIGITS * float(np.ptp(signal))]
-    if len(bends) < LEVELS:
+    # The digits of a file also round, by an unknown share of the range.
+    found = (
+        _quantum_above(share * float(np.ptp(signal)), np.diff(signal), bends) for share in DIGITS
+    )
+    return next((step for step in found if step > 0.0), 0.0)
+
+
+def _quantum_above(least: float, changes: Array, bends: Array) -> float:
+    """Quantisation step of a signal from its first and second differences; zero without one.
+
+    Differences up to `least` count as zero.
+    """
+    bends = bends[np.abs(bends) > least]
+    changes = changes[np.abs(changes) > least]
+    if len(bends) < LEVELS or not len(changes):
         return 0.0
     alternating = np.mean(bends[1:] * bends[:-1] < 0.0) > MIN_ALTERNATING_SHARE
     bends = np.abs(bends)
     # In a short record the smallest second difference may itself be a few steps.
     for part in range(1, MAX_DIVISOR + 1):
-        step = float(np.min(bends)) / part
-        steps = np.diff(signal) / step
+        step = _refined(float(np.min(bends)) / part, np.concatenate([bends, changes]))
+        steps = changes / step
         if np.mean(np.abs(steps - np.rint(steps)) < STEP_TOLERANCE) > MIN_WHOLE_SHARE:
             # Ramps and parabolas without noise have a few second differences, all of the same sign.
             various = len(np.unique(np.rint(bends / step))) >= MIN_SIZES
             return step if alternating or various else 0.0
     return 0.0
+
+
+def _refined(step: float, changes: Array) -> float:
+    """Quantisation step by least squares, from small to large changes; `step` is approximate.
+
+    The digits of a file round the smallest changes, so that large ones are not whole multiples.
+    """
+    sizes = np.sort(np.abs(changes))
+    for power in range(1, int(np.log10(max(sizes[-1] / step, 1.0))) + 2):
+        part = sizes[: np.searchsorted(sizes, 10.0**power * step, "right")]
+        counts = np.rint(part / step)
+        if counts.any():
+            step = float(part @ counts / (counts @ counts))
+    return step
 
 
 def encoder_step(path: Array) -> float:

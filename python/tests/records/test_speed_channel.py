@@ -11,6 +11,7 @@ from jbf.records.motion.speed_delay import filtered_speed
 from jbf.records.motion.speed_zero import speed_zero
 from jbf.records.motion.window_comparisons import window_comparisons
 from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
+from scipy import signal
 
 PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
 COUNT_M = 1e-4
@@ -103,6 +104,24 @@ def test_speed_from_central_differences_is_recognised_without_a_delay(span: int)
     speed[half:-half] = (COUNTED_M[span:] - COUNTED_M[:-span]) / (span * STEP_S)
     finding: Any = derived_speed("a", TIME_S, COUNTED_M, speed)
     assert (finding.size, "late" in finding.words) == (span, False)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_filtered_difference_of_counts_is_recognised_as_derived_from_them(order: int) -> None:
+    """A low-pass of 1.4 samples, applied once or twice, on a central difference."""
+    filtered = np.gradient(COUNTED_M, STEP_S)
+    for _ in range(order):
+        filtered = signal.lfilter([0.5], [1.0, -0.5], filtered)
+    finding: Any = derived_speed("a", TIME_S, COUNTED_M, filtered)
+    assert (finding.kind, "filtered difference" in finding.words) == ("coarse_speed", True)
+
+
+@pytest.mark.parametrize("share", [0.03, 0.3, 3.0])
+def test_speed_with_noise_of_its_own_is_not_a_filtered_difference(share: float) -> None:
+    """The noise is a share of the quantisation error of a central difference."""
+    size = share * COUNT_M / np.sqrt(24.0) / STEP_S
+    noisy = SPEED_M_S + white(len(TIME_S), 7, size)
+    assert derived_speed("a", TIME_S, COUNTED_M, noisy) is None
 
 
 def test_speed_is_not_a_path_difference_if_independent_long_short_or_at_rest() -> None:

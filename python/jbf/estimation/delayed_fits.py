@@ -6,11 +6,11 @@ of the motion. The errors of the motion are estimated with each delay.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import pairwise
-from operator import attrgetter, methodcaller
+from operator import attrgetter
 
 import numpy as np
 from scipy import optimize
@@ -91,8 +91,10 @@ def fits_on_clocks(
 ) -> list[DelayedFit]:
     """Fit with the force on each clock, or with a significant delay common to all runs instead.
 
-    `clocks_s` has the delay of each possible clock of the force. The common delay is used if it is
-    significant, and likelier (`likeliest`) at the samples of both.
+    `clocks_s` has the delay of each possible clock of the force. The common delay must be
+    significant, and likelier than the delay that is as far from the clock in the other direction.
+    The clock itself is not compared: the motion is smoother between its readings than at them, so
+    that a delay of half a sampling interval may be likelier than none.
     """
     at_once = fits_at_once(first.campaign, first.law, first.effects)
     fits = list(in_parallel(lambda c: fit_with_delay(first, solution, c), clocks_s, at_once))
@@ -109,27 +111,24 @@ def fits_on_clocks(
         return fits
     start = _likeliest_delay(first.thinned, fits[0].solution, at_once)
     if first.thinned is not first:
-        start = _likeliest_of(first, fits[0].solution, [start.delay_s], at_once)
+        (start,) = _fits_at_same_readings(first, fits[0].solution, [start.delay_s], at_once)
     delay_s, sd_s = _fixed_point_delay(start)
     tested = [k for k in tested if abs(delay_s - clocks_s[k]) >= settings.min_delay_sigma * sd_s]
     if not tested:
         return fits
-    readings, near = start.first, start.solution
-    delayed = fit_with_delay(readings, near, delay_s)
-    end = fit_with_delay(first, delayed.solution, delay_s, delayed=True)
+    end = fit_with_delay(first, start.solution, delay_s, delayed=True)
     for k in tested:
-        without = fit_with_delay(readings, near, clocks_s[k])
-        used = (fit.solution.samples.weight for fit in (without, delayed))
+        compared_s = [delay_s, 2.0 * clocks_s[k] - delay_s]
+        delayed, opposite = _fits_at_same_readings(first, end.solution, compared_s, at_once)
+        used = (fit.solution.samples.weight for fit in (opposite, delayed))
         weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
-        deviance = methodcaller("deviance_at", weights)
-        if likeliest((delayed, without), deviance) is delayed:
+        gain = opposite.deviance_at(weights) - delayed.deviance_at(weights)
+        if gain >= (2.0 * settings.min_delay_sigma) ** 2:
             fits[k] = end
     return fits
 
 
-def likeliest(
-    fits: Iterable[DelayedFit], deviance: Callable[[DelayedFit], float] = attrgetter("deviance")
-) -> DelayedFit:
+def likeliest(fits: Iterable[DelayedFit]) -> DelayedFit:
     """Return the likeliest of the fits with an RMS of at most `max_rms_ratio` times the smallest.
 
     With a wrong delay or motion, the scale of the motion's errors may increase so far that they
@@ -138,7 +137,7 @@ def likeliest(
     fits = list(fits)
     smallest = min(fit.solution.rms for fit in fits)
     most = fits[0].first.campaign.settings.motion.max_rms_ratio * smallest
-    return min((fit for fit in fits if fit.solution.rms <= most), key=deviance)
+    return min((fit for fit in fits if fit.solution.rms <= most), key=attrgetter("deviance"))
 
 
 def _delays_at_minima_s(problem: Problem, solution: Solution) -> list[float]:
@@ -203,24 +202,27 @@ def _likeliest_delay(first: Problem, solution: Solution, at_once: int) -> Delaye
     step_s = _shortest_step_s(first)
     near_zero_s = [-0.25 * step_s, 0.25 * step_s]
     tried_s = sorted({*near_zero_s, *_delays_at_minima_s(first, solution)})
-    best = _likeliest_of(first, solution, tried_s, at_once)
+    best = likeliest(_fits_at_same_readings(first, solution, tried_s, at_once))
     tried_s = [best.delay_s + k * step_s for k in (-0.5, 0.0, 0.5)]
-    return _likeliest_of(first, best.solution, tried_s, at_once)
+    return likeliest(_fits_at_same_readings(first, best.solution, tried_s, at_once))
 
 
-def _likeliest_of(
-    first: Problem, solution: Solution, tried_s: Sequence[float], at_once: int
-) -> DelayedFit:
-    """Return the likeliest of the delays `tried_s`, compared at the same readings."""
+def _fits_at_same_readings(
+    first: Problem, solution: Solution, delays_s: Sequence[float], at_once: int
+) -> list[DelayedFit]:
+    """Fits with each of several delays, without the readings that any of them drops.
+
+    Delays that are two sampling intervals longer drop none of the remaining readings either.
+    """
     beyond_s = (0.5 * MAX_BRACKETS + 1.0) * _shortest_step_s(first)
-    margin_s = float(np.max(np.abs(tried_s))) + beyond_s
+    margin_s = float(np.max(np.abs(delays_s))) + beyond_s
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
     fits = in_parallel(
         lambda delay_s: fit_with_delay(readings, solution, delay_s, rounds=1),
-        tried_s,
+        delays_s,
         at_once,
     )
-    return likeliest(fits)
+    return list(fits)
 
 
 def _shortest_step_s(problem: Problem) -> float:

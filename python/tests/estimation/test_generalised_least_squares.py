@@ -16,6 +16,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.records.motion.estimated_motion import estimate_motion
 
+Array = npt.NDArray[np.float64]
 STEP_S = 0.004
 INERTIA, COULOMB, VISCOUS = 0.05, 0.4, 0.1
 NOISE = 0.02
@@ -114,6 +115,47 @@ def test_delay_of_the_fitted_runs_belongs_to_the_predictions_of_other_runs(tmp_p
 def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:
     found = fit(Rig(), [drive(31), drive(32)], ["inertia"], law="coulomb")
     assert "late_channel" not in {finding.kind for finding in found.findings}
+
+
+def hoist(seed: int, delay_s: float) -> Run:
+    """A mass with friction on trapezoids of speed that begin between samples, at 100 Hz."""
+    random, step_s, count_m = np.random.default_rng(seed), 0.01, 1e-4
+    durations, accelerations = [], []
+    while sum(durations) < 21.0:
+        top, slope = random.uniform([0.3, 0.5], [1.2, 1.0])
+        slope *= (-1.0) ** (len(durations) // 4)
+        durations += [top / abs(slope), random.uniform(0.5, 1.5)] * 2
+        accelerations += [slope, 0.0, -slope, 0.0]
+    starts_s = np.concatenate(([0.0], np.cumsum(durations)[:-1]))
+    accelerated = np.array(accelerations) * durations
+    speeds = np.concatenate(([0.0], np.cumsum(accelerated)[:-1]))
+    ways = (speeds + 0.5 * accelerated) * durations
+    places = np.concatenate(([0.0], np.cumsum(ways)[:-1]))
+
+    def motion(time_s: Array) -> tuple[Array, Array, Array]:
+        """Position, speed and acceleration; the speed of a pause is exactly zero."""
+        part = np.searchsorted(starts_s, time_s, "right") - 1
+        gone, slope = time_s - starts_s[part], np.array(accelerations)[part]
+        speed = np.where(part % 4 == 3, 0.0, speeds[part] + slope * gone)
+        return places[part] + speeds[part] * gone + 0.5 * slope * gone**2, speed, slope
+
+    time_s = step_s * (1.137 + np.arange(1990))
+    position, _, _ = motion(time_s)
+    _, speed, acceleration = motion(time_s - delay_s)
+    force = 500.0 * acceleration + 150.0 * np.sign(speed) + 200.0 * speed
+    force += 15.0 * random.standard_normal(len(time_s))
+    counted = np.round(position / count_m) * count_m
+    return Run.from_arrays(time_s, None, force, position_m=counted, name=f"seed_{seed}")
+
+
+@pytest.mark.parametrize("delay", [-0.4, 0.0, 0.3])
+def test_delay_of_a_fraction_of_a_sample_is_found_and_none_is_invented(delay: float) -> None:
+    """Unit: samples. Between samples, the estimated motion is smoother than at them."""
+    found = fit(Rig(), [hoist(seed, delay * 0.01) for seed in range(3)], ["inertia"], law="coulomb")
+    late = [f.size / 0.01 for f in found.findings if f.kind == "late_channel"]
+    assert late == ([pytest.approx(delay, abs=0.1)] if delay else [])
+    for name, true in (("F_c", 150.0), ("F_v", 200.0), ("inertia.m_e", 500.0)):
+        assert found.parameters[name].value == pytest.approx(true, rel=0.01)
 
 
 def drawn_residual(

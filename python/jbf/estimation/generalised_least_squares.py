@@ -63,11 +63,9 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     motion = best.solution.samples.motion
     if motion is None:
         return problem, solution
-    # Keep the fit without errors of the motion if that with small ones has a much larger RMS.
+    # Large errors of the motion can make a worse fit likelier (`likeliest`).
     settings = problem.campaign.settings
-    share = motion.mean_share(best.solution.samples.weight)
-    large = share > settings.conditions.max_motion_share
-    if not large and best.solution.rms > settings.noise.max_rms_ratio * plain_fit.rms:
+    if best.solution.rms > settings.motion.max_rms_ratio * plain_fit.rms:
         return plain, plain_fit
     # Systematic errors are the changes of the parameters with less smoothing and, if their
     # likelihoods are similar, with the other clock and without located corners.

@@ -80,12 +80,17 @@ def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solutio
 
 
 def _describes_motion_errors(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
-    """Whether an added effect that distorts the force explains no more than the motion's errors."""
+    """Whether an added effect that distorts the force explains no more than the motion's errors.
+
+    Such an effect filters the predicted force, and with it the errors of the motion. The whitened
+    sum of squares is that of unfiltered errors. It may therefore decrease by their share in the
+    variance, summed over the samples, in units of the noise variance.
+    """
     if not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
-    samples = common_samples(richer.samples, simpler.samples)
-    explained = samples.rms(simpler.residuals) ** 2 - samples.rms(richer.residuals) ** 2
-    return bool(explained < candidates.campaign.motion_share * samples.rms(simpler.residuals) ** 2)
+    campaign = candidates.campaign
+    most = campaign.motion_share * campaign.samples.count
+    return most > 0.0 and likelihood_gain(richer, simpler) < most
 
 
 def _differ_by_less_than_quantisation(

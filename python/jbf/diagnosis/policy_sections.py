@@ -309,9 +309,9 @@ class Laws:
     """Thresholds for the comparison of base laws."""
 
     tie_sigma: float = documented(
-        2.0,
+        3.0,
         "standard errors, between sections of the records, up to which a law is tied with the best",
-        "1 in 40 by chance",
+        "1 in 700 by chance for each of up to ten laws",
     )
     same_ratio: float = documented(
         1.005,

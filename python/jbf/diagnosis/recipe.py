@@ -185,7 +185,9 @@ def _diagnose(
         with_motion_errors = comparable(recorded, clock, policy)
         laws, no_law = which_law(with_motion_errors, clock, policy, progress)
         names = laws_to_diagnose(laws)
-        margin = max(margin, (1.0 + policy.least_share(with_motion_errors.motion_share)) ** 0.5)
+        margin = max(
+            margin, (1.0 + policy.least_effect_share(with_motion_errors.motion_share)) ** 0.5
+        )
     best: Diagnosis | None = None
     for name in names:
         if best is not None and not _may_predict_better(name, best, laws, margin):

@@ -156,7 +156,7 @@ def which_law(
         limit_s = None if time_limit is None else time_limit.seconds
         raise Unfinished(steps=campaign.work.most, file=campaign.named, time_limit_s=limit_s)
     entries = {name: (len(find_law(name).parameters), errors) for name, errors in held_out.items()}
-    tried = compared(entries, policy, policy.least_share(campaign.motion_share))
+    tried = compared(entries, policy, policy.least_effect_share(campaign.motion_share))
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
     return (first, *(t for t in tried if t is not first)), refused
 
@@ -290,7 +290,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
             continue
         if errors is not None:
             entries[name] = count, errors
-    tried = compared(entries, policy, policy.least_share(campaign.motion_share))
+    tried = compared(entries, policy, policy.least_effect_share(campaign.motion_share))
     present = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
     # Of tied laws prefer the one with the fewest parameters: their order is due to chance.

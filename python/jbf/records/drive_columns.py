@@ -159,7 +159,7 @@ def _friction(drive: Drive) -> dict[str, float]:
     if drive.friction == "voltage":
         return {"voltage_v": 1.0}
     if drive.friction == "force":
-        return {"friction_n": 1.0}
+        return {"friction_n": 1.0, "force_n": 1.0}
     if drive.friction == "torque":
         assert drive.motor_rad is not None
         of_joint = {"torque_n_m": 1.0} if drive.motion == "rotary" else {}

@@ -116,6 +116,15 @@ def test_drive_requires_time_and_one_of_its_motion_and_friction_columns() -> Non
     assert columns.required(["angle_rad", "speed_rpm"], False) == ["time_s", "speed_rpm"]
 
 
+@pytest.mark.parametrize("name", ["friction_n", "force_n"])
+def test_force_of_a_slide_is_read_under_either_name(tmp_path: Path, name: str) -> None:
+    rows = [f"{0.01 * k:.2f},{0.001 * k:.3f},{5.0 + k}" for k in range(20)]
+    (tmp_path / "run.csv").write_text("\n".join([f"time_s,position_m,{name}", *rows]))
+    run = jbf.read_run(tmp_path / "run.csv", Rig(drive=Drive("linear", "force")))
+    assert run.friction is not None
+    np.testing.assert_array_equal(run.friction, 5.0 + np.arange(20.0))
+
+
 @pytest.mark.parametrize(
     ("drive", "name", "hint"),
     [

@@ -63,10 +63,16 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     motion = best.solution.samples.motion
     if motion is None:
         return problem, solution
-    # Large errors of the motion can make a worse fit likelier (`likeliest`).
+    # Small errors of the motion may absorb lack of fit, which least squares with the same motion
+    # would follow.
     settings = problem.campaign.settings
-    if best.solution.rms > settings.motion.max_rms_ratio * plain_fit.rms:
-        return plain, plain_fit
+    share = motion.mean_share(best.solution.samples.weight)
+    if share <= settings.conditions.max_motion_share:
+        near = near_solution(best.problem, best.solution)
+        samples = replace(near.samples, motion=None)
+        ordinary = search_solution(best.problem, samples, near.values, WHITE, EVALUATIONS)
+        if best.solution.rms > settings.noise.max_rms_ratio * ordinary.rms:
+            return plain, plain_fit
     # Systematic errors are the changes of the parameters with less smoothing and, if their
     # likelihoods are similar, with the other clock and without located corners.
     solution = polish(best.problem, best.solution)

@@ -37,7 +37,8 @@ class NoiseSettings:
     )
     max_rms_ratio: float = documented(
         1.02,
-        "maximum ratio of the RMS of a fit with coloured noise to that of the ordinary fit",
+        "maximum ratio of the RMS of a fit with coloured noise, or with errors of the motion, to "
+        "that of the ordinary fit",
         "close to one for noise; above it, lack of fit would be absorbed",
     )
     clip_sigma: float = documented(

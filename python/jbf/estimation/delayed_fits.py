@@ -123,7 +123,7 @@ def fits_on_clocks(
         used = (fit.solution.samples.weight for fit in (opposite, delayed))
         weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
         gain = opposite.deviance_at(weights) - delayed.deviance_at(weights)
-        if gain >= (2.0 * settings.min_delay_sigma) ** 2:
+        if gain >= settings.min_delay_sigma**2:
             fits[k] = end
     return fits
 

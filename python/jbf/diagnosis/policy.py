@@ -91,7 +91,7 @@ class Policy:
                 )
 
     def least_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that residual structure or a better law must explain.
+        """Minimum share of the mean square that residual structure must explain.
 
         The minimum increases with the contribution of the motion's errors, because their covariance
         is only estimated.
@@ -104,7 +104,7 @@ class Policy:
         return min(motion_share, self.motion.max_structure_share)
 
     def least_effect_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that any effect must explain.
+        """Minimum share of the mean square that an effect or a better law must explain.
 
         It is the share of the motion's errors in the variance, up to `motion.max_effect_share`.
         """

@@ -265,8 +265,8 @@ class Motion:
     )
     max_effect_share: float = documented(
         0.015,
-        "share of the mean square that an effect must explain where the errors of the motion have "
-        "a larger share of the variance",
+        "share of the mean square that an effect or a better law must explain where the errors of "
+        "the motion have a larger share of the variance",
         "false effects explained less in most simulated servo drives (seeds 4938 to 5012)",
     )
     min_noise_ratio: float = documented(
@@ -311,7 +311,7 @@ class Laws:
     tie_sigma: float = documented(
         3.0,
         "standard errors, between sections of the records, up to which a law is tied with the best",
-        "1 in 700 by chance for each of up to ten laws",
+        "1 in 700 by chance for each of up to nine laws",
     )
     same_ratio: float = documented(
         1.005,

@@ -92,9 +92,10 @@ def fits_on_clocks(
     """Fit with the force on each clock, or with a significant delay common to all runs instead.
 
     `clocks_s` has the delay of each possible clock of the force. The common delay must be
-    significant, and likelier than the delay that is as far from the clock in the other direction.
-    The clock itself is not compared: the motion is smoother between its readings than at them, so
-    that a delay of half a sampling interval may be likelier than none.
+    significant. Its deviance must be smaller by the square of `min_delay_sigma` than that of the
+    delay that is as far from the clock in the other direction, without a much larger RMS. The clock
+    itself is not compared: the motion is smoother between its readings than at them, so that a
+    delay of half a sampling interval may be likelier than none.
     """
     at_once = fits_at_once(first.campaign, first.law, first.effects)
     fits = list(in_parallel(lambda c: fit_with_delay(first, solution, c), clocks_s, at_once))
@@ -123,7 +124,8 @@ def fits_on_clocks(
         used = (fit.solution.samples.weight for fit in (opposite, delayed))
         weights = [np.minimum(a, b) for a, b in zip(*used, strict=True)]
         gain = opposite.deviance_at(weights) - delayed.deviance_at(weights)
-        if gain >= settings.min_delay_sigma**2:
+        explains = delayed.solution.rms <= settings.max_rms_ratio * opposite.solution.rms
+        if explains and gain >= settings.min_delay_sigma**2:
             fits[k] = end
     return fits
 
@@ -212,7 +214,7 @@ def _fits_at_same_readings(
 ) -> list[DelayedFit]:
     """Fits with each of several delays, without the readings that any of them drops.
 
-    Delays that are two sampling intervals longer drop none of the remaining readings either.
+    A few more readings are dropped at each end, for a search from the result.
     """
     beyond_s = (0.5 * MAX_BRACKETS + 1.0) * _shortest_step_s(first)
     margin_s = float(np.max(np.abs(delays_s))) + beyond_s

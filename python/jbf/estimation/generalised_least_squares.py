@@ -63,8 +63,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     motion = best.solution.samples.motion
     if motion is None:
         return problem, solution
-    # Small errors of the motion may absorb lack of fit, which least squares with the same motion
-    # would follow.
+    # Where the errors of the motion are small, a larger RMS than that of ordinary least squares
+    # with the same motion shows that they absorb lack of fit.
     settings = problem.campaign.settings
     share = motion.mean_share(best.solution.samples.weight)
     if share <= settings.conditions.max_motion_share:

@@ -38,7 +38,7 @@ class NoiseSettings:
     max_rms_ratio: float = documented(
         1.02,
         "maximum ratio of the RMS of a fit with coloured noise, or with errors of the motion, to "
-        "that of the ordinary fit",
+        "that of the ordinary fit with the same motion",
         "close to one for noise; above it, lack of fit would be absorbed",
     )
     clip_sigma: float = documented(
@@ -326,7 +326,8 @@ class MotionSettings:
     )
     min_delay_sigma: float = documented(
         5.0,
-        "minimum delay of the force in all runs, in standard errors, for it to be corrected",
+        "minimum delay of the force in all runs, in standard errors, for it to be corrected; its "
+        "square is the least gain over the opposite delay",
         "1 in 2 million for Gaussian noise",
     )
     delay_range_samples: float = documented(

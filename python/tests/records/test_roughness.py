@@ -69,6 +69,12 @@ def test_quantisation_step_is_recovered_from_a_file_with_few_digits(digits: int)
     assert quantum_of(written) == pytest.approx(step, rel=1e-4)
 
 
+def test_digits_of_a_fine_path_are_its_quantisation_step() -> None:
+    time_s = np.arange(0.0, 16.0, 0.004)
+    path = 0.05 * np.sin(2.0 * time_s) + 0.02 * np.sin(7.3 * time_s)
+    assert quantum_of(np.round(path, 8)) == pytest.approx(1e-8)
+
+
 def test_no_quantisation_step_is_estimated_from_noise_two_levels_or_exact_ramps() -> None:
     assert quantum_of(path_of(TIME_S)) == 0.0
     assert quantum_of(white(400, 3, 1.0)) == 0.0

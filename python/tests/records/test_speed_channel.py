@@ -124,6 +124,18 @@ def test_speed_with_noise_of_its_own_is_not_a_filtered_difference(share: float) 
     assert derived_speed("a", TIME_S, COUNTED_M, noisy) is None
 
 
+@pytest.mark.parametrize("speed_step", [0.0, 0.01])
+def test_speed_of_whole_counts_per_sample_is_not_a_filtered_difference(speed_step: float) -> None:
+    """Between the ramps the path has no quantisation errors, which any filter would repeat."""
+    ramp = np.linspace(0.0, 4.0, 10)
+    move = np.concatenate([ramp, np.full(500, 4.0), ramp[::-1]])
+    speed = np.tile(np.concatenate([move, -move]), 4) * COUNT_M / STEP_S
+    time_s = STEP_S * np.arange(len(speed))
+    path = quantised(integrated(speed, STEP_S), COUNT_M)
+    recorded = speed if speed_step == 0.0 else quantised(speed, speed_step)
+    assert derived_speed("a", time_s, path, recorded) is None
+
+
 def test_speed_is_not_a_path_difference_if_independent_long_short_or_at_rest() -> None:
     assert derived_speed("a", TIME_S, COUNTED_M, SPEED_M_S) is None
     assert derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, 13)) is None

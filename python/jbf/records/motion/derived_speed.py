@@ -22,21 +22,26 @@ MIN_EQUAL_SHARE = 0.9
 """Minimum share of the samples in motion at which the speed equals the difference."""
 EQUALITY_TOLERANCE = 0.05
 """Tolerance of the equality, as a share of the step of the difference."""
-FILTER_DELAY = 6
-"""Longest delay and longest advance of a difference in the impulse response, samples."""
+FILTER_REACH = 6
+"""Number of differences before a sample, and of those after it, that a filter contains."""
 FILTER_POLES = 2
-"""Number of poles of the filter, as of a second-order low-pass."""
+"""Number of poles of a filter, as of a second-order low-pass."""
 FILTER_SAMPLES = 20_000
 """Largest number of samples to which the coefficients of a filter are fitted."""
 FILTER_TOLERANCE = 0.1
 """Tolerance of the equality with a filter's output, relative to the standard deviation of the
-quantisation errors of the path in that output. An independent speed deviates by more."""
+quantisation errors of the path after the numerator of the filter."""
+MIN_NUMERATOR = 0.02
+"""Minimum sum of the coefficients of the differences. It is small if the past of a smooth speed
+predicts the next value."""
+MIN_SAMPLES_IN_MOTION = 50
+"""Minimum number of samples in motion."""
 MAX_NOISE_RATIO = 3.0
 """Noise of a difference, relative to the tolerance, below which it is kept as a measured speed."""
 
 
 def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """Finding that the speed was derived from the path by differences; None if it was measured."""
+    """Finding that the speed is a difference of the path or a filter of it; None if measured."""
     if len(time) < 4 * SPANS[-1]:
         return None
     step = quantum_of(path) or step_of(path)
@@ -55,7 +60,7 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
         for after in sorted({0, span // 2}):
             where = slice(span - after, len(time) - after)
             in_motion = moving[where]
-            if in_motion.sum() < 50:
+            if in_motion.sum() < MIN_SAMPLES_IN_MOTION:
                 continue
             agrees = np.abs(speed[where] - difference)[in_motion] <= tolerance
             if agrees.mean() > MIN_EQUAL_SHARE:
@@ -70,25 +75,28 @@ def _is_filtered(time: Array, path: Array, speed: Array, moving: Mask) -> bool:
     """Whether a linear filter of the differences of the path has the speed as its output.
 
     The coefficients of the filter are fitted. The speed must contain the errors of a quantised
-    path, since any smooth speed is the output of a filter of a smooth path.
+    path, since any smooth speed is the output of a filter of a smooth path. Samples at which the
+    path changes by the same number of counts in each step contain none.
     """
-    error = quantum_of(path) / 12.0**0.5
-    if error == 0.0:
+    step, step_s = quantum_of(path), float(np.median(np.diff(time)))
+    if step == 0.0:
         return False
-    difference = np.diff(path) / np.diff(time)
-    places = np.arange(FILTER_DELAY + FILTER_POLES, len(speed) - FILTER_DELAY)
+    counts = np.rint(np.diff(path) / step)
+    places = np.arange(FILTER_REACH + FILTER_POLES, len(speed) - FILTER_REACH)
     places = places[moving[places]][:FILTER_SAMPLES]
-    if len(places) < 50:
+    around = range(-FILTER_REACH, FILTER_REACH)
+    differences = np.stack([counts[places + k] for k in around], axis=1) * (step / step_s)
+    varied = np.ptp(differences, axis=1) > 0.0
+    places, differences = places[varied], differences[varied]
+    if len(places) < MIN_SAMPLES_IN_MOTION:
         return False
-    delays = range(1 - FILTER_DELAY, FILTER_DELAY + 1)
-    columns = [speed[places - k] for k in range(1, FILTER_POLES + 1)]
-    columns += [difference[places - k] for k in delays]
-    design, output = np.stack(columns, axis=1), speed[places]
+    past = np.stack([speed[places - k] for k in range(1, FILTER_POLES + 1)], axis=1)
+    design, output = np.hstack([past, differences]), speed[places]
     coefficients = np.linalg.lstsq(design, output, rcond=1e-12)[0]
-    response = np.pad(coefficients[FILTER_POLES:], 1)
-    inherited = error * float(np.linalg.norm(np.diff(response)) / np.median(np.diff(time)))
+    numerator = coefficients[FILTER_POLES:]
+    inherited = float(np.linalg.norm(np.diff(np.pad(numerator, 1)))) * step / 12.0**0.5 / step_s
     equal = np.abs(output - design @ coefficients) <= FILTER_TOLERANCE * inherited
-    return bool(equal.mean() > MIN_EQUAL_SHARE)
+    return bool(np.sum(numerator) > MIN_NUMERATOR and equal.mean() > MIN_EQUAL_SHARE)
 
 
 def _finding(name: str, words: str, size: float, delay_s: float = 0.0) -> Finding:

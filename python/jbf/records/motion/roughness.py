@@ -19,6 +19,8 @@ MIN_ALTERNATING_SHARE, MIN_SIZES = 0.1, 6
 """Minimum share of sign changes, or number of sizes, of second differences due to rounding."""
 MAX_DIVISOR = 6
 """Largest divisor of the smallest change that is tried for the step."""
+REFINED = 20_000
+"""Approximate number of differences from which a step is refined."""
 STEP_TOLERANCE, MIN_WHOLE_SHARE = 0.05, 0.9
 """Tolerance of whole steps, and share of the changes within it, for a quantised signal."""
 NOISE_WINDOW = 101
@@ -88,11 +90,9 @@ def quantum_of(signal: Array) -> float:
     """
     if len(np.unique(signal)) < LEVELS:
         return 0.0
-    bends = np.diff(signal, 2)
-    # The digits of a file also round, by an unknown share of the range.
-    found = (
-        _quantum_above(share * float(np.ptp(signal)), np.diff(signal), bends) for share in DIGITS
-    )
+    changes, bends = np.diff(signal), np.diff(signal, 2)
+    # The rounding to the digits of a file is unknown: the limits are tried from the smallest.
+    found = (_quantum_above(share * float(np.ptp(signal)), changes, bends) for share in DIGITS)
     return next((step for step in found if step > 0.0), 0.0)
 
 
@@ -107,23 +107,25 @@ def _quantum_above(least: float, changes: Array, bends: Array) -> float:
         return 0.0
     alternating = np.mean(bends[1:] * bends[:-1] < 0.0) > MIN_ALTERNATING_SHARE
     bends = np.abs(bends)
+    differences = np.concatenate([bends, changes])
+    sizes = np.sort(np.abs(differences[:: max(len(differences) // REFINED, 1)]))
     # In a short record the smallest second difference may itself be a few steps.
     for part in range(1, MAX_DIVISOR + 1):
-        step = _refined(float(np.min(bends)) / part, np.concatenate([bends, changes]))
-        steps = changes / step
-        if np.mean(np.abs(steps - np.rint(steps)) < STEP_TOLERANCE) > MIN_WHOLE_SHARE:
+        step = _refined(float(np.min(bends)) / part, sizes)
+        counts = changes / step
+        if np.mean(np.abs(counts - np.rint(counts)) < STEP_TOLERANCE) > MIN_WHOLE_SHARE:
             # Ramps and parabolas without noise have a few second differences, all of the same sign.
             various = len(np.unique(np.rint(bends / step))) >= MIN_SIZES
             return step if alternating or various else 0.0
     return 0.0
 
 
-def _refined(step: float, changes: Array) -> float:
-    """Quantisation step by least squares, from small to large changes; `step` is approximate.
+def _refined(step: float, sizes: Array) -> float:
+    """Quantisation step by least squares, from small to large differences; `step` is approximate.
 
-    The digits of a file round the smallest changes, so that large ones are not whole multiples.
+    The smallest difference contains a rounding error of the file, which would be multiplied by the
+    number of steps in a large one. `sizes` has the absolute differences in ascending order.
     """
-    sizes = np.sort(np.abs(changes))
     for power in range(1, int(np.log10(max(sizes[-1] / step, 1.0))) + 2):
         part = sizes[: np.searchsorted(sizes, 10.0**power * step, "right")]
         counts = np.rint(part / step)

@@ -7,13 +7,17 @@ import pytest
 from by_hand import Array, assert_recovered, coulomb, four_runs
 from jbf import Diagnosis, Rig, Run, diagnose
 from jbf.diagnosis import Trial
-from jbf.diagnosis.evidence import evidence, evidence_on_common_samples
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.level import score_test
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.review import needed, reconsider, weights
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.generalised_least_squares import with_motion_errors
 from jbf.estimation.likelihood import effective_share, likelihood_gain, share_of_gain
+from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
 from linear_campaigns import (
     CANDIDATES,
     Textbook,
@@ -24,6 +28,7 @@ from linear_campaigns import (
     linear_runs,
     threshold,
 )
+from point_to_point import point_to_point
 
 
 def trial(diagnosis: Diagnosis, effect: str, step: int = 0) -> Trial:
@@ -287,3 +292,33 @@ def test_score_test_predicts_likelihood_gain_and_value_of_a_linear_effect() -> N
         for half in (near.samples.within(first), near.samples.within([~f for f in first]))
     ]
     assert sum(halves) == pytest.approx(gain, rel=0.35)
+
+
+@pytest.mark.parametrize(("effect", "share", "counts"), [
+    ("sensor_lag", 0.8, False), ("sensor_lag", 1.5, True), ("quadratic_drag", 0.8, True),
+])  # fmt: skip
+def test_gain_up_to_the_share_of_motion_errors_is_no_evidence_for_a_filter(
+    effect: str, share: float, counts: bool
+) -> None:
+    """The gain is a multiple of the mean share of the errors times the number of samples."""
+    runs = point_to_point([6], duration_s=8.0)
+    coarse = [(r.time_s, r.friction, np.round(np.asarray(r.position_m), 5)) for r in runs]
+    read = [Run.from_arrays(time_s, None, force, position_m=x) for time_s, force, x in coarse]
+    campaign = Campaign.prepare(Rig(), read)
+    problem = Problem(campaign, "coulomb", "journal", ("inertia",))
+    shifted, solution = with_motion_errors(problem, minimum(problem, [{}]))
+    motion = solution.samples.motion
+    assert motion is not None
+    samples = replace(shifted.campaign.samples, motion=motion)
+    candidates = Candidates(replace(shifted.campaign, samples=samples), "coulomb", "journal")
+    simple = candidates.converge(("inertia",))
+    gain = share * motion.mean_share(samples.weight) * samples.count
+    model = candidates.fitted(("inertia", effect)).problem
+    present = candidates.fitted(("inertia",)).named_values()
+    values = np.array([present.get(name, 0.01) for name in model.names])
+    rich = replace(
+        model.solution(values, simple.samples, simple.noise),
+        residuals=[r * np.exp(-0.5 * gain / samples.count) for r in simple.residuals],
+    )
+    assert likelihood_gain(rich, simple) == pytest.approx(gain)
+    assert (full_gain(candidates, rich, simple) > 0.0) == counts

@@ -158,6 +158,41 @@ def test_delay_of_a_fraction_of_a_sample_is_found_and_none_is_invented(delay: fl
         assert found.parameters[name].value == pytest.approx(true, rel=0.01)
 
 
+def stage(seed: int, delay_s: float) -> Run:
+    """A stage on moves of minimum jerk with pauses, at 1 kHz, with an encoder of 1 um."""
+    random, step_s, count_m = np.random.default_rng(seed), 0.001, 1e-6
+    time_s = step_s * np.arange(4000)
+    x, v, a = (np.zeros(len(time_s)) for _ in range(3))
+    start_s, place = 0.1, 0.0
+    while start_s < 5.0:
+        low, high = [0.1, -0.05, 0.1], [0.3, 0.05, 0.3]
+        duration_s, target, pause_s = random.uniform(low, high)
+        way, shares = (
+            target - place,
+            [(t - start_s) / duration_s for t in (time_s, time_s - delay_s)],
+        )
+        u, w = np.clip(shares, 0.0, 1.0)
+        x += way * (10.0 * u**3 - 15.0 * u**4 + 6.0 * u**5)
+        v += way / duration_s * (30.0 * w**2 - 60.0 * w**3 + 30.0 * w**4)
+        a += way / duration_s**2 * (60.0 * w - 180.0 * w**2 + 120.0 * w**3)
+        start_s, place = start_s + duration_s + pause_s, target
+    v[np.abs(v) < 1e-9] = 0.0
+    noise = np.random.default_rng(seed).standard_normal(len(time_s))
+    force = 2.5 * a + 7.0 * np.sign(v) + 25.0 * v + 0.6 * noise
+    return Run.from_arrays(
+        time_s, None, force, position_m=np.round(x / count_m) * count_m, name=f"seed_{seed}"
+    )
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.6])
+def test_moves_of_minimum_jerk_have_only_the_simulated_delay(delay: float) -> None:
+    """Unit: samples. Of these runs without a delay, one of -0.2 samples is likelier than none."""
+    runs = [stage(seed, delay * 0.001) for seed in (8, 9)]
+    found = fit(Rig(), runs, ["inertia"], law="coulomb")
+    late = [f.size / 0.001 for f in found.findings if f.kind == "late_channel"]
+    assert late == ([pytest.approx(delay, abs=0.2)] if delay else [])
+
+
 def drawn_residual(
     errors: Any, sensitivity: Any, scale: float, random: np.random.Generator, noise: float = NOISE
 ) -> npt.NDArray[np.float64]:

@@ -96,6 +96,7 @@ SHOWN = {
     "inertia": Shown({"m_e": 30.0}),
     "zero_load_dependence": Shown({"k": 0.03}),
     "gravity": Shown({"G": 4.0, "theta_0": 0.5}, "a sine of 1 rad/s"),
+    "spring": Shown({"k": 40.0}),
     "cogging": Shown({"A": 2.0, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
     "cogging_2": Shown(
         {"A": 1.0, "pitch": 0.01, "phase": 0.0},

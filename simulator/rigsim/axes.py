@@ -69,6 +69,7 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "inertia": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
     "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
     "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
+    "spring": {"k": Spread(10.0, 30.0, "N/m", 1.0, signed=True)},
 }
 """Ranges of the parameters at strength 1, at which an effect is several times as large as noise."""
 OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
@@ -201,7 +202,7 @@ def _force(
     slope = 1.0 / (1.0 / slope + of("viscous_thinning", "w") * np.abs(v) / slope)
     hangs = of("gravity", "theta_0")
     weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
-    carried = weight + of("inertia", "m_e") * a
+    carried = weight + of("spring", "k") * path + of("inertia", "m_e") * a
     push = of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
     # A gear requires more than the carried force when it drives, and returns less when driven back.
     lost = of("torque_proportional", "mu") * np.where(carried * v > 0.0, carried, -carried)

@@ -232,7 +232,8 @@ fn laws_without_memory_take_one_step_per_sample() {
 
 #[test]
 fn effects_of_the_position_take_one_step_per_sample() {
-    let effects: [(&str, &[f64]); 5] = [
+    let effects: [(&str, &[f64]); 6] = [
+        ("spring", &[30.0]),
         ("cogging", &[0.5, 0.01, 0.3]),
         ("cogging_2", &[0.5, 0.02, 0.3]),
         ("pitch_ripple", &[0.2, 0.01, 0.3]),

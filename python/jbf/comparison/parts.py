@@ -19,6 +19,7 @@ from jbf.models.model import Model
 NO_FRICTION = (
     "inertia",
     "gravity",
+    "spring",
     "cogging",
     "cogging_2",
     "sensor_offset",

@@ -30,7 +30,6 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.review import (
-    OFFSET,
     machine_of,
     start_model,
     weights,
@@ -303,7 +302,7 @@ def _with_law(
     uncertain = effects_without_estimate(fit.parameters, missing, policy)
     doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
     steps = with_final_outcomes(steps, present, doubted)
-    # Alternatives to the named effects, and the verdict.
+    # Alternatives to the named effects and the machine terms, and the verdict.
     optional = OptionalParts(candidates.tell)
     all_weights: dict[str, dict[str, float]] = optional.of(
         ALTERNATIVES, lambda: weights(candidates, named), {}
@@ -311,8 +310,7 @@ def _with_law(
     if missing and not selected.not_tried and ALTERNATIVES in optional.omitted:
         where = f"{optional.omitted[ALTERNATIVES]}; alternatives to the effects were not tested"
         remains = (*remains, Remainder(SEARCH, where, 0.0))
-    weighted = (*missing, OFFSET)
-    posterior = {name: w for name, w in all_weights.items() if name in weighted}
+    posterior = {n: w for n, w in all_weights.items() if n in missing or len(w) > 1}
     alternatives = {name: tuple(w)[1:] for name, w in posterior.items()}
     tied = {name: others for name, others in alternatives.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))

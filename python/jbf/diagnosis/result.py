@@ -37,10 +37,11 @@ class Diagnosis(Result):
     effects
         Added effects with sufficient evidence, in the order of acceptance.
     alternatives
-        For each added effect, those with which it is confounded, the most likely first.
+        For each added effect, those with which it is confounded, the most likely first; also for
+        each machine term that is confounded with an effect.
     weights
-        For each added effect, its posterior weight and those of its alternatives, at equal prior
-        odds.
+        For each effect in `alternatives`, its posterior weight and those of its alternatives, at
+        equal prior odds.
     steps
         The ledger, beginning with the base law.
     failures

@@ -389,6 +389,11 @@ weight = gravity_G * (sin(theta) * cos(gravity_theta_0_rad) - cos(theta) * sin(g
 extra += weight
 transmitted += weight
 """,
+    "spring": """
+spring = spring_k * position
+extra += spring
+transmitted += spring
+""",
     "cogging": _COGGING.format(e="cogging"),
     "cogging_2": _COGGING.format(e="cogging_2"),
 }

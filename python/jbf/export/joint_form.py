@@ -186,7 +186,7 @@ def _effect_term(model: Model, name: str, carried: _Carried) -> Term:
     if name in instrument(model):
         return Term(name, "external", "property of the recording")
     if name in BODY:
-        return Term(name, "external", "mass and weight of the simulated bodies")
+        return Term(name, "external", "mass, weight or spring of the simulated bodies")
     if name in COGGING:
         if carried.elements.cogging:
             return Term(name, "exact", "")

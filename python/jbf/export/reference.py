@@ -18,8 +18,8 @@ from jbf.models.model import Model
 from jbf.records.arguments import list_of_runs
 from jbf.records.run import Run
 
-BODY = ("inertia", "gravity")
-"""Effects of the moved body: a simulator or a feedforward has them as mass and weight."""
+BODY = ("inertia", "gravity", "spring")
+"""Effects of the moved body: a simulator or a feedforward has them as mass, weight and spring."""
 COGGING = ("cogging", "cogging_2")
 """Effects that add a force that is periodic in the position."""
 

@@ -10,7 +10,7 @@ from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
 
 REQUIREMENTS = {
-    "transmitted": "another effect whose force the drive transmits: gravity, inertia",
+    "transmitted": "another effect whose force the drive transmits: gravity, spring, inertia",
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
     "position": "the column angle_rad or position_m in every run",

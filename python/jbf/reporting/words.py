@@ -110,7 +110,7 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         conclusion(diagnosis, place)
         + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
-        + _offset_sentence(diagnosis)
+        + machine_sentences(diagnosis)
         + law_sentence(diagnosis)
     )
 
@@ -146,17 +146,13 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
     return f" Improves the fit, but held-out runs do not confirm it, so it is not named: {names}."
 
 
-def _offset_sentence(diagnosis: Diagnosis) -> str:
-    """Name the effects that fit as well as a drive's offset; empty if none does."""
-    alternatives = [
-        alternative
+def machine_sentences(diagnosis: Diagnosis) -> str:
+    """Name the effects that fit as well as a machine term of a drive; empty if none does."""
+    return "".join(
+        f" In these runs {name} cannot be distinguished from {listed(alternatives, 'or')}."
         for name in diagnosis.machine
-        for alternative in diagnosis.alternatives.get(name, ())
-        if name == "sensor_offset"
-    ]
-    if not alternatives:
-        return ""
-    return f" In these runs the offset cannot be distinguished from {listed(alternatives, 'or')}."
+        if (alternatives := diagnosis.alternatives.get(name, ()))
+    )
 
 
 def law_sentence(diagnosis: Diagnosis) -> str:

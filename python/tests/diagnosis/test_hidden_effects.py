@@ -10,7 +10,7 @@ from by_hand import assert_recovered
 from campaigns import campaign
 from golden import axis_run, golden
 from input_errors import input_error
-from jbf import Diagnosis, Model, Parameter, Rig, Run, diagnose, fit
+from jbf import Diagnosis, Drive, Model, Parameter, Rig, Run, diagnose, fit
 from jbf import effects as catalogue
 from known_motions import integrated
 from linear_campaigns import linear_diagnosis, linear_runs
@@ -153,6 +153,7 @@ SWING = 8.0
 """Ratio of the motion of a joint that carries a weight to that of a slide."""
 FAST_FITS = (
     "gravity",
+    "spring",
     "torque_proportional",
     "viscous_asymmetry",
     "zero_load_dependence",
@@ -175,10 +176,13 @@ def _runs(records: list[AxisRun], path: str) -> list[Run]:
 
 @cache
 def _drive(seed: int, *effects: str) -> tuple[list[Run], dict[str, Any]]:
-    """Runs and true parameters of a simulated drive; a joint has an angle, a slide a position."""
+    """Runs and true parameters of a simulated drive; a joint has an angle, a slide a position.
+
+    The rotation of the joint is too small to distinguish a spring from a weight.
+    """
     swing = SWING if "torque_proportional" in effects else 1.0
     records, truth = axis_campaign(seed, effects, swing=swing)
-    joint = "gravity" in effects or seed % 2 == 0
+    joint = "gravity" in effects or (seed % 2 == 0 and "spring" not in effects)
     return _runs(records, "angle_rad" if joint else "position_m"), truth
 
 
@@ -228,6 +232,29 @@ def test_hidden_effect_of_a_drive_is_named_without_alternatives(name: str) -> No
     found = diagnose(Rig(), _drive(12, *hidden)[0], law="coulomb")
     assert (found.verdict, set(found.effects)) == ("missing", set(hidden))
     assert not any(found.alternatives.values())
+
+
+@cache
+def _joint_with_spring(swing: float) -> tuple[Diagnosis, float]:
+    """Diagnosis of a joint with a spring, and the true stiffness (N m/rad)."""
+    records, truth = axis_campaign(18, ("spring",), swing=swing)
+    rig = Rig(drive=Drive("rotary", "torque"))
+    hidden: Any = truth["effects"]
+    return diagnose(rig, _runs(records, "angle_rad"), law="coulomb"), hidden["spring"]["k"]
+
+
+def test_spring_of_a_joint_with_a_large_rotation_is_named() -> None:
+    found, stiffness = _joint_with_spring(SWING)
+    assert (found.verdict, found.effects, found.machine) == ("missing", ("spring",), ())
+    assert found.alternatives == {"spring": ()}
+    assert_recovered(found.model.parameters["spring.k"], stiffness, errors=4.5, share=0.01)
+
+
+def test_spring_of_a_joint_with_a_small_rotation_is_an_alternative_to_a_weight() -> None:
+    found, _ = _joint_with_spring(1.0)
+    assert (found.verdict, found.machine) == ("adequate", ("gravity",)), found.summary()
+    assert found.alternatives == {"gravity": ("spring",)}
+    assert "gravity cannot be distinguished from spring" in " ".join(found.summary().split())
 
 
 @pytest.mark.extended

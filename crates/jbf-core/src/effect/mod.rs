@@ -50,6 +50,7 @@ pub mod sensor_lag;
 pub mod sensor_nonlinearity;
 pub mod sensor_offset;
 pub mod shear_thinning;
+pub mod spring;
 pub mod stribeck_asymmetry;
 pub mod stribeck_excess;
 pub mod stroke_dependence;

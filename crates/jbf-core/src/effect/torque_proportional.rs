@@ -1,7 +1,7 @@
 //! Friction proportional to the transmitted force: `+ mu |F_t| sgn(v)`.
 //!
 //! `F_t` is the force of other effects of the chain that the transmission carries: a weight
-//! (`gravity`), a mass (`inertia`), a constant load (`sensor_offset`). For a recorded load, use
+//! (`gravity`), a `spring`, a mass (`inertia`), a constant load (`sensor_offset`). For a recorded load, use
 //! `dry_load_dependence`, which includes the friction of a force `k L`. This effect is for a load
 //! that is not recorded and that the model also estimates.
 //!
@@ -35,7 +35,7 @@ described! {
     named_effect TorqueProportional = Info::new::<T, Self>("torque_proportional", Stage::Contact)
         .summary("friction proportional to the torque or force that the drive transmits")
         .equation(
-            "F -> F + mu |F_t| sgn(v), F_t the sum of weight, inertial force and offset of \
+            "F -> F + mu |F_t| sgn(v), F_t the sum of weight, spring, inertial force and offset of \
              the other effects",
         )
         .source("Hamon, Gautier & Garrec 2010; Wolf & Iskandar 2018")

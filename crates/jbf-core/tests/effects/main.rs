@@ -32,6 +32,7 @@ mod sensor_lag;
 mod sensor_nonlinearity;
 mod sensor_offset;
 mod shear_thinning;
+mod spring;
 mod stribeck_asymmetry;
 mod stribeck_excess;
 mod stroke_dependence;

@@ -32,6 +32,7 @@ fn only_effects_of_drives_are_refused_by_a_bearing() {
         "torque_proportional",
         "zero_load_dependence",
         "gravity",
+        "spring",
         "cogging",
         "cogging_2",
     ];

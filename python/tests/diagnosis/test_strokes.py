@@ -1,5 +1,6 @@
 """Friction levels of strokes, against an analysis of variance."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,8 +10,10 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.residual_structure.constancy import find_stroke_levels
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out_comparison import stroke_of
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
 from scipy import signal, stats
-from slides import Array, friction_of, numbers_in, slides, solution_with, white_noise
+from slides import VALUES, Array, friction_of, numbers_in, slides, solution_with, white_noise
 
 FRICTION_N = 7.0
 """Coulomb friction of the slides at 0.1 m/s."""
@@ -146,6 +149,23 @@ def test_errors_that_depend_on_run_or_speed_are_not_stroke_levels() -> None:
         for errors in (by_run, by_speed):
             residuals = [e + error for e, error in zip(noise, errors, strict=True)]
             assert levels_in(campaign, residuals) == []
+
+
+def test_inertia_that_differs_between_strokes_is_not_a_friction_level() -> None:
+    """An inertial force larger than the friction, with 8 % more or less in each stroke."""
+    campaign, mass_kg = sines(), 400.0
+    problem = Problem(campaign, "coulomb", "journal", ("inertia",))
+    values = {**VALUES, "inertia.m_e": mass_kg}
+    solution = problem.solution(
+        np.array([values[name] for name in problem.names]), campaign.samples, WHITE
+    )
+    random, residuals = np.random.default_rng(5), []
+    for p, noise in zip(campaign.prepared, white_noise(campaign, 5, 0.1), strict=True):
+        stroke = stroke_of(p)
+        change = 0.08 * random.standard_normal(int(stroke.max()) + 1)
+        inertia = mass_kg * p.motion.acceleration * np.where(stroke >= 0, change[stroke], 0.0)
+        residuals.append(noise + inertia)
+    assert find_stroke_levels(problem, replace(solution, residuals=residuals), DEFAULT) == []
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,8 @@ which no parameter of a law describes. The test for strokes is an analysis of va
 between the strokes of a run is computed from the ratio of recorded and predicted friction, and the
 variance within strokes from the difference between their two halves. For a correct model, and for a
 wrong model with equal errors in all strokes, both estimate the same variance for any correlation
-time of the noise. Their ratio has Fisher's F distribution.
+time of the noise. Their ratio has Fisher's F distribution. The predicted friction does not include
+inertia, weight and other forces that are not friction, since these do not wear.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ import numpy as np
 from scipy import special
 
 from jbf.arrays import Array, Mask
+from jbf.comparison.parts import NO_FRICTION
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.held_out_comparison import Strokes, stroke_of
@@ -202,8 +204,7 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
 
 def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
     """Test whether the friction level differs between strokes; empty if it does not."""
-    friction = problem.predict(solution.values)
-    counted = solution.samples.counted
+    friction, counted = _friction(problem, solution), solution.samples.counted
     residuals = solution.samples.without_deviations(solution.residuals, solution.noise)
     between = within = friction_square = 0.0
     degrees = 0
@@ -234,6 +235,14 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
     size = 100.0 * float(np.sqrt(share * square / friction_square))
     where = f"friction level differs between strokes by {size:.2g} % RMS (F = {ratio:.0f})"
     return [Remainder("stroke", where, min(share, 1.0))]
+
+
+def _friction(problem: Problem, solution: Solution) -> list[Array]:
+    """Predicted friction, N, one array per run, without the forces that are not friction."""
+    effects = [name for name in problem.effects if name not in NO_FRICTION]
+    friction = Problem(problem.campaign, problem.law, problem.clock, effects)
+    values = problem.values_by_name(solution.values)
+    return friction.predict(np.array([values[name] for name in friction.names]))
 
 
 def _halves(

@@ -389,11 +389,7 @@ weight = gravity_G * (sin(theta) * cos(gravity_theta_0_rad) - cos(theta) * sin(g
 extra += weight
 transmitted += weight
 """,
-    "spring": """
-spring = spring_k * position
-extra += spring
-transmitted += spring
-""",
+    "spring": "extra += spring_k * position\ntransmitted += spring_k * position",
     "cogging": _COGGING.format(e="cogging"),
     "cogging_2": _COGGING.format(e="cogging_2"),
 }

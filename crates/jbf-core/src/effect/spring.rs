@@ -1,7 +1,7 @@
 //! Spring: a force that is proportional to the position, `+ k x`.
 //!
-//! Return springs of doors, valves and throttles, cable chains and the springs that balance a
-//! weight act in motion and at rest. The force at the position zero, such as a preload, is the
+//! Return springs of valves and throttles, cables, and the springs that balance a weight act in
+//! motion and at rest. The force at the position zero, such as a preload, is the
 //! effect `sensor_offset`.
 //!
 //! Source: Hooke's law.

@@ -12,7 +12,7 @@ from jbf.records.findings.finding import Finding
 from jbf.reporting.advice import advice_on
 from jbf.reporting.paragraphs import WIDTH, columns, hanging
 from jbf.reporting.tables import LEDGER_HEAD, ledger_rows, parameter_rows
-from jbf.reporting.words import conclusion, law_sentence, listed, machine_sentences, omitted_words
+from jbf.reporting.words import conclusion, drive_sentences, law_sentence, listed, omitted_words
 
 MOST_LINES, USUAL_LINES = 30, 24
 """Maximum number of lines, and the number at which the list of parameters is truncated."""
@@ -47,7 +47,7 @@ def diagnosis_summary(diagnosis: Diagnosis, most_lines: int = MOST_LINES) -> str
         Maximum number of lines. Kinds of findings are omitted first, then the last
         recommendations.
     """
-    sentences = conclusion(diagnosis, ""), machine_sentences(diagnosis), law_sentence(diagnosis)
+    sentences = conclusion(diagnosis, ""), drive_sentences(diagnosis), law_sentence(diagnosis)
     conclusions = _paragraph("", "".join(sentences).strip(), MOST_SENTENCES)
     above = [_cut(verdict_line(diagnosis)), *conclusions, "", *_steps(diagnosis)]
     kinds, outlook = MOST_FINDINGS, _outlook(diagnosis)

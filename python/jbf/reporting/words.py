@@ -63,6 +63,8 @@ def law_and_effects(model: Model) -> str:
 
 
 UNKNOWN = "unknown"
+SHOWN_SHARE = 0.2
+"""Share of the motion's errors in the mean square error from which a summary states it."""
 
 
 def noise_words(noise_rms: float, unit: str) -> str:
@@ -110,7 +112,7 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         conclusion(diagnosis, place)
         + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
-        + machine_sentences(diagnosis)
+        + drive_sentences(diagnosis)
         + law_sentence(diagnosis)
     )
 
@@ -146,13 +148,22 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
     return f" Improves the fit, but held-out runs do not confirm it, so it is not named: {names}."
 
 
-def machine_sentences(diagnosis: Diagnosis) -> str:
-    """Name the effects that fit as well as a machine term of a drive; empty if none does."""
-    return "".join(
-        f" In these runs {name} cannot be distinguished from {listed(alternatives, 'or')}."
+def drive_sentences(diagnosis: Diagnosis) -> str:
+    """State the share of the motion's errors, and effects that fit as well as a machine term.
+
+    Empty if the share is below `SHOWN_SHARE` and no effect does.
+    """
+    samples, sentences = diagnosis.after.samples, []
+    share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
+    if share >= SHOWN_SHARE:
+        percent = f"{100.0 * share:.0f} %"
+        sentences.append(f"Errors of the estimated motion are {percent} of the mean square error.")
+    sentences += [
+        f"In these runs {name} cannot be distinguished from {listed(alternatives, 'or')}."
         for name in diagnosis.machine
         if (alternatives := diagnosis.alternatives.get(name, ()))
-    )
+    ]
+    return "".join(f" {sentence}" for sentence in sentences)
 
 
 def law_sentence(diagnosis: Diagnosis) -> str:

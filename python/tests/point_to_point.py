@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from jbf import Run
+from scipy import signal
 
 STEP_S, SUBSTEPS = 0.002, 4
 COULOMB_N, BREAKAWAY_N, VISCOUS_N_S_M, MASS_KG = 8.0, 10.0, 15.0, 2.0
@@ -63,6 +64,7 @@ def point_to_point(
     duration_s: float = 20.0,
     integral_1_s: float = 0.0,
     bias_n: float = 0.0,
+    lag_s: float = 0.0,
 ) -> list[Run]:
     """Recorded runs of 500 Hz.
 
@@ -72,12 +74,17 @@ def point_to_point(
         Rate of the integral part: with it the force at rest rises until the axis creeps on.
     bias_n
         Constant load, which the controller holds at rest together with friction.
+    lag_s
+        Time constant of a first-order low-pass filter of the force.
     """
     runs = []
     for seed in seeds:
         random = np.random.default_rng(seed)
-        states = controlled(trapezoids(random, duration_s), integral_1_s, bias_n)
-        x, v, force = (signal[::SUBSTEPS] for signal in states)
+        x, v, force = controlled(trapezoids(random, duration_s), integral_1_s, bias_n)
+        if lag_s > 0.0:
+            decay = np.exp(-STEP_S / SUBSTEPS / lag_s)
+            force, _ = signal.lfilter([1.0 - decay], [1.0, -decay], force, zi=[decay * force[0]])
+        x, v, force = (state[::SUBSTEPS] for state in (x, v, force))
         runs.append(
             Run.from_arrays(
                 STEP_S * np.arange(len(x)),

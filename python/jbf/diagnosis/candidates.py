@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from jbf.arrays import Names
 from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.directions import RichestResidual
 from jbf.diagnosis.fit_state import Fitted, Reached
@@ -66,24 +67,29 @@ class Candidates:
         self.earlier = earlier
         self.policy, self.progress = policy, progress
         self.reached: Reached = Reached() if earlier is None else earlier.reached
-        self._excluded: dict[str, str] = {} if earlier is None else earlier._excluded
         self._fitted: dict[frozenset[str], Fitted] = {}
         self._level: Level | None = None
         self._levels: dict[frozenset[str], tuple[Level, RichestResidual | None]] = {}
         self.residual: RichestResidual | None = None
         """Residual of the last calibrated model without all that candidates can explain."""
 
-    def with_campaign(self, campaign: Campaign, effects: Iterable[str] | None = None) -> Candidates:
+    def with_campaign(
+        self, campaign: Campaign, effects: Names | None = None, solution: Solution | None = None
+    ) -> Candidates:
         """Return the candidates of a changed campaign; their fits start from these solutions.
 
-        Changed errors of the motion are not estimated again with the model `effects`.
+        The fit of the model `effects` starts from `solution`, if it is given. Changed errors of the
+        motion are not estimated again with this model.
         """
         self.earlier = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
         # Valid until the level is calibrated for a model of the new campaign.
         again._level = self._level
-        if effects is not None and campaign.samples.motion is not self.campaign.samples.motion:
-            again.fitted(effects).motion_estimated = True
+        if effects is not None:
+            fitted = again.fitted(effects)
+            fitted.motion_estimated = campaign.samples.motion is not self.campaign.samples.motion
+            if solution is not None:
+                fitted.solution, fitted.state = solution, "ranked"
         return again
 
     # ---- which effects ----------------------------------------------------------------------
@@ -103,15 +109,7 @@ class Candidates:
     def _missing_requirements(self) -> dict[str, str | None]:
         """Why these runs cannot test an effect that the law allows, or None, by name."""
         pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
-        return {e.name: self.campaign.missing_requirement(e) for e in pages} | self._excluded
-
-    def exclude_untestable(self, effects: Iterable[str]) -> None:
-        """Exclude permanently those of the effects that these runs cannot test.
-
-        An effect may become untestable with errors of the motion estimated again. It is not tried
-        in a later round, since these errors may be small without it.
-        """
-        self._excluded |= {n: self.not_tried[n] for n in effects if n in self.not_tried}
+        return {e.name: self.campaign.missing_requirement(e) for e in pages}
 
     def addable(self, present: Collection[str]) -> list[str]:
         """Names of the effects that can be added to a model with the effects `present`."""

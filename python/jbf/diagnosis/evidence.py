@@ -48,7 +48,7 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if _describes_motion_errors(richer, simpler):
+    if describes_motion_errors(richer, simpler):
         gain = min(gain, price)
     return gain - price
 
@@ -62,7 +62,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     if (
         _adds_idle_effect(candidates, richer, simpler)
         or _differ_by_less_than_quantisation(candidates.campaign, richer, simpler)
-        or _describes_motion_errors(richer, simpler)
+        or describes_motion_errors(richer, simpler)
     ):
         return 0.0
     richer, simpler = replace(richer, noise=WHITE), replace(simpler, noise=WHITE)
@@ -79,18 +79,18 @@ def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solutio
     return bool(set(idle) - set(simpler.effects))
 
 
-def _describes_motion_errors(richer: Solution, simpler: Solution) -> bool:
-    """Whether an added effect that distorts the force explains no more than the motion's errors.
+def describes_motion_errors(richer: Solution, simpler: Solution) -> bool:
+    """Whether an added effect that distorts the force may describe errors of the motion only.
 
     Such an effect filters the predicted force, and with it the errors of the motion. The whitening
-    assumes unfiltered errors. An effect that smooths them therefore gains up to their share of the
-    variance at each sample.
+    assumes unfiltered errors, and the likelihood of the effect may be too large. An effect that
+    describes these errors leaves the other part of the mean square of the residuals.
     """
     samples = common_samples(richer.samples, simpler.samples)
     if samples.motion is None or not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
-    largest_gain = samples.motion.mean_share(samples.weight) * samples.count
-    return likelihood_gain(richer, simpler) < largest_gain
+    other_part = 1.0 - samples.motion.variance_share(samples.weight)
+    return samples.square(richer.residuals) > other_part * samples.square(simpler.residuals)
 
 
 def _differ_by_less_than_quantisation(

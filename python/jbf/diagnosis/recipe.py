@@ -273,11 +273,11 @@ def _with_law(
     campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
-    # The start model, and for a drive the errors of its motion.
-    base = start_model(candidates)
-    with_motion_errors = with_errors_of_motion(candidates, base)
+    with_motion_errors = with_errors_of_motion(candidates)
     if with_motion_errors is not None:
-        candidates = candidates.with_campaign(with_motion_errors, base)
+        candidates = candidates.with_campaign(with_motion_errors)
+        # They are not estimated again without the superfluous machine terms.
+        candidates.fitted(start_model(candidates)).motion_estimated = True
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, of_selection = selected.present, selected.steps, selected.remainders

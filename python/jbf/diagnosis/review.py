@@ -38,7 +38,12 @@ def machine_of(rig: Rig, present: Iterable[str]) -> Names:
 
 
 def start_model(candidates: Candidates) -> Names:
-    """Select the machine terms of a drive that the runs require, estimated jointly with the law.
+    """Select the machine terms of a drive that the runs require, estimated jointly with the law."""
+    return still_needed(candidates, machine_terms(candidates))
+
+
+def machine_terms(candidates: Candidates) -> Names:
+    """Fit all machine terms of a drive that the runs can show jointly with the law.
 
     The fit with each term starts from the fit without it, since a search from the starting values
     of all terms may end at a weight of zero.
@@ -50,18 +55,20 @@ def start_model(candidates: Candidates) -> Names:
         present = (*present, name)
         candidates.look(present, near)
         candidates.converge(present)
-    return still_needed(candidates, present)
+    return present
 
 
-def with_errors_of_motion(candidates: Candidates, base: Names) -> Campaign | None:
+def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
     """Return a drive's campaign with the covariance of the motion's errors in the likelihood.
 
-    The errors are estimated with the machine terms `base`. The force is corrected by a time delay
-    common to all runs. Returns None for a rig without a drive, or if these errors are negligible.
+    The errors are estimated with all machine terms, since without the errors an inertia may seem
+    unnecessary. The force is corrected by a time delay common to all runs. Returns None for a rig
+    without a drive, or if these errors are negligible.
     """
     if candidates.campaign.rig.drive is None:
         return None
-    problem, solution = candidates.fitted(base).problem, candidates.converge(base)
+    terms = machine_terms(candidates)
+    problem, solution = candidates.fitted(terms).problem, candidates.converge(terms)
     problem, solution = with_motion_errors(problem, solution)
     if solution.samples.motion is None:
         return None

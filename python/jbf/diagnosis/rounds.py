@@ -144,14 +144,12 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 # The errors of the motion, estimated without the effect, contain its force.
                 leader = trial_round.leader
                 re_estimated = re_estimated_motion(candidates, (*present, leader))
-                if re_estimated is not None and leader in re_estimated[1]:
-                    campaign, remaining = re_estimated
-                    candidates = candidates.with_campaign(campaign, remaining)
-                    candidates.exclude_untestable(present)
-                    present = tuple(n for n in present if n in remaining)
+                if re_estimated is not None and leader in re_estimated.effects:
+                    candidates = candidates.with_campaign(*re_estimated)
+                    present = tuple(n for n in present if n in re_estimated.effects)
                     visited, reviewed = {frozenset(present)}, set()
                 elif may_update:
-                    update = re_estimated  # the leader is not testable with these errors
+                    update = re_estimated  # the leader is a delay
                 if update is None:
                     extended = _with_leader(candidates, present, trial_round)
         # If no effect is added, terms are added one by one, the largest evidence first. A term
@@ -160,17 +158,19 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         if ended and follow == "promising" and may_update:
             update = best_term_update(candidates, present)
         if update is not None:
+            before = present
             while update is not None:
                 updates += 1
-                campaign, effects = update
-                candidates = candidates.with_campaign(campaign, effects)
-                candidates.exclude_untestable((*present, trial_round.leader or ""))
-                present = still_needed(candidates, tuple(n for n in present if n in effects))
+                candidates = candidates.with_campaign(*update)
+                kept = [n for n in present if n in update.effects]
+                added = [n for n in update.effects if n not in present]
+                present = still_needed(candidates, (*kept, *added))
                 more = ended and updates < policy.terms.max_updates
                 update = best_term_update(candidates, present) if more else None
             visited, reviewed, follow = {frozenset(present)}, set(), "promising"
             # The model is tested again with these terms: that step replaces the last one.
-            steps.pop()
+            if present == before:
+                steps.pop()
             continue
         # If neither an effect nor a term is added, effects may be exchanged or removed, once per
         # model. The selection does not return to a model that was tested already.

@@ -17,7 +17,7 @@ import numpy as np
 from jbf.arrays import Array
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.review import MACHINE_TERMS, start_model, with_errors_of_motion
+from jbf.diagnosis.review import MACHINE_TERMS, with_errors_of_motion
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_parts
@@ -126,7 +126,7 @@ def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
     separate = replace(campaign, work=campaign.work.part(1.0))
     candidates = Candidates(separate, SIMPLEST, clock, policy)
     try:
-        return with_errors_of_motion(candidates, start_model(candidates)) or campaign
+        return with_errors_of_motion(candidates) or campaign
     except Unfinished:
         return campaign
 

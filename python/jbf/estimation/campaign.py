@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from jbf.arrays import Array, Mask, Names
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
@@ -21,7 +21,7 @@ from jbf.estimation.quantisation import bias_rms, noise_before_converter
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
 from jbf.estimation.work import TimeLimit, Work
-from jbf.models.catalogue import Effect, find_effect
+from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
 from jbf.models.requirements import has_angle, has_path, has_position
 from jbf.models.user_effects import COLUMNS_OF_EVERY_RUN
@@ -44,9 +44,9 @@ DISTORTS_FORCE = frozenset((
 ))  # fmt: skip
 """Effects that filter a force or a motion, or distort the force.
 
-These effects are not tried where errors of the acceleration are a large part of the residual,
-because they would describe these errors. The estimated acceleration is too small at its peaks,
-where the force is largest, as for a curved characteristic of the sensor.
+These effects can describe errors of the motion, and must explain more than these. The estimated
+acceleration is too small at its peaks, where the force is largest, as for a curved characteristic
+of the sensor.
 """
 NEEDS_RECORDED_FORCE = DISTORTS_FORCE | {"inertia", "sensor_drift"}
 """Effects that are not tried without a recorded force.
@@ -213,10 +213,6 @@ class Campaign:
             return None
         return float(min(map(np.min, temperatures))), float(max(map(np.max, temperatures)))
 
-    def testable(self, effects: Names) -> Names:
-        """Return the effects whose requirements the runs meet (`missing_requirement`)."""
-        return tuple(n for n in effects if self.missing_requirement(find_effect(n)) is None)
-
     def missing_requirement(self, effect: Effect) -> str | None:
         """Reason why the runs cannot show an effect; None if they meet all of its requirements."""
         needs, conditions = effect.needs, self.settings.conditions
@@ -224,8 +220,6 @@ class Campaign:
             return "no force was recorded"
         if effect.name in NEEDS_TIME and self.steady:
             return "steady states do not contain it"
-        if effect.name in DISTORTS_FORCE and self.motion_share > conditions.max_motion_share:
-            return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
             if column not in COLUMNS_OF_EVERY_RUN and any(
                 column not in p.run.columns() for p in self.prepared

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from jbf.estimation.approach import approach
 from jbf.estimation.delayed_fits import (
     EVALUATIONS,
     DelayedFit,
@@ -20,7 +21,7 @@ from jbf.estimation.delayed_fits import (
     likeliest,
     near_solution,
 )
-from jbf.estimation.minimum import polish
+from jbf.estimation.minimum import MAX_EVALUATIONS, polish, settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
@@ -33,7 +34,7 @@ from jbf.estimation.posterior_motions import (
     with_scaled_intensity,
 )
 from jbf.estimation.problem import Problem
-from jbf.estimation.search import search_solution
+from jbf.estimation.search import NEAR_MINIMUM, search_solution
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 
@@ -67,7 +68,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     # with the same motion shows that they absorb lack of fit.
     settings = problem.campaign.settings
     share = motion.mean_share(best.solution.samples.weight)
-    if share <= settings.conditions.max_motion_share:
+    if share <= settings.motion.max_small_share:
         near = near_solution(best.problem, best.solution)
         samples = replace(near.samples, motion=None)
         ordinary = search_solution(best.problem, samples, near.values, WHITE, EVALUATIONS)
@@ -108,18 +109,24 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
 
 
 def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Return the problem without corrected delays and without corners located by the forces.
+    """Fit by ordinary least squares, without corrected delays and corners located by the forces.
 
-    It is the starting point for the errors of the motion of a model with other effects. Readings
-    that the correction dropped remain dropped.
+    It is the starting point for the errors of the motion of a model with other effects, which may
+    explain what was corrected. Readings that the correction dropped remain dropped.
     """
     campaign = problem.campaign
     delay_s = corrected_delay_s(campaign)
     if delay_s != 0.0:
         problem = shifted(problem, -delay_s)
+    else:
+        without = replace(campaign, samples=replace(campaign.samples, motion=None))
+        problem = problem.with_campaign(without)
     motions = [m and m.with_corners_located_by(None) for m in posteriors(problem)]
     problem = with_posteriors(problem, motions)
-    return problem, near_solution(problem, solution)
+    seeds: list[list[dict[str, float]]] = [[problem.values_by_name(solution.values)], [{}]]
+    return problem, settle(
+        problem, approach(problem, seeds, MAX_EVALUATIONS), least_gain=NEAR_MINIMUM
+    )
 
 
 def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedFit:

@@ -109,12 +109,6 @@ class ConditionSettings:
         "minimum difference, K, for two temperatures to count as different",
         "changes an oil's viscosity by a tenth; a thermometer is not at the contact",
     )
-    max_motion_share: float = documented(
-        0.1,
-        "mean share of the motion's errors in the variance above which no effect that filters a "
-        "force or a motion is a candidate",
-        "such an effect would smooth these errors",
-    )
     min_pitch_periods: float = documented(
         2.0,
         "minimum number of periods within the travel for a wave to have a pitch",
@@ -318,6 +312,12 @@ class MotionSettings:
     )
     huber_sigma: float = documented(
         2.5, "standard errors beyond which a residual is downweighted", "Huber (1964)"
+    )
+    max_small_share: float = documented(
+        0.1,
+        "mean share of the motion's errors in the variance up to which the RMS must be almost that "
+        "of ordinary least squares",
+        "the errors of a sample are smaller than a third of its noise",
     )
     max_rms_ratio: float = documented(
         1.25,

@@ -11,6 +11,10 @@ This error is the standard error of the speed divided by the acceleration. The p
 is the change of the reading during the error of the time. It reduces the weights of the samples in
 a fit. Tests exclude samples for which it is a large part of the noise.
 
+The force at rest is unknown and may change at any time. If an effect spreads a jump, the readings
+after a rest contain this force. They are excluded while the change of the reading, at its rate at
+the sample during a fraction of the rest (`MOST`), is a large part of the noise.
+
 A film, the age of a contact, a contact that deflects, and a load cell with backlash have an unknown
 state at the start of a run. The influence of this state (initial-state transient) decays as the
 shaft moves, or ends as the force reverses. Its duration is the time during which two simulations of
@@ -119,43 +123,47 @@ def _share(error_n: Array, noise_rms: float) -> Array:
 
 
 def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
-    """Standard error of a prediction after each reversal, N, due to the uncertain reversal time.
+    """Standard error of a prediction after each reversal or rest, N, due to an uncertain time.
 
-    Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
+    The force at rest is unknown, and may have changed at any time during the rest; the error is
+    infinite. Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
     """
     motion, time_s = p.motion, p.run.time_s
     errors = np.zeros(len(prediction))
     if len(prediction) < 3:
         return errors
     rate_n_s = np.abs(np.gradient(prediction, time_s))
-    befores, afters = _reversals(p)
+    befores, afters, rested = _reversals_and_rests(p)
     for k, (before, after) in enumerate(zip(befores, afters, strict=True)):
         between_s = float(time_s[after] - time_s[before])
-        slope = float(abs(motion.velocity[after] - motion.velocity[before])) / between_s
-        error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
-        error_s = min(error / slope, MOST * between_s)
+        error_s = MOST * between_s
+        if not rested[k]:
+            slope = float(abs(motion.velocity[after] - motion.velocity[before])) / between_s
+            error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
+            error_s = min(error / slope, error_s)
         last = befores[k + 1] if k + 1 < len(befores) else len(prediction)
         behind_n = error_s * rate_n_s[before + 1 : last + 1]
         # The error decays from where the sign is known again.
         small = np.flatnonzero(behind_n[after - before - 1 :] < least_n)
         if len(small):
             behind_n = behind_n[: after - before - 1 + int(small[0])]
-        errors[before + 1 : before + 1 + len(behind_n)] = behind_n
+        errors[before + 1 : before + 1 + len(behind_n)] = np.inf if rested[k] else behind_n
     return errors
 
 
-def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
-    """Indices of the last sample before, and of the first sample after, each reversal.
+def _reversals_and_rests(p: Prepared) -> tuple[list[int], list[int], list[bool]]:
+    """Indices of the last sample before, and of the first sample after, each reversal or rest.
 
-    Only reversals without a rest in between are included.
+    The third result states for each whether it is a rest. The first sample of a run that begins
+    with a rest counts as the one before it.
     """
     motion = p.motion
     directed = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity != 0.0))
-    turned = np.flatnonzero(np.diff(np.sign(motion.velocity[directed])) != 0.0)
-    befores, afters = directed[turned], directed[turned + 1]
-    rests = np.concatenate(([0], np.cumsum(motion.resting)))
-    moving = rests[afters] == rests[befores]
-    return befores[moving].tolist(), afters[moving].tolist()
+    if motion.resting[0]:
+        directed = np.append(0, directed)
+    rested = np.diff(np.cumsum(motion.resting)[directed]) > 0
+    ends = np.flatnonzero((np.diff(np.sign(motion.velocity[directed])) != 0.0) | rested)
+    return directed[ends].tolist(), directed[ends + 1].tolist(), rested[ends].tolist()
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Diagnosis of an axis whose position controller holds it between moves."""
 
-from jbf import Rig, diagnose
+import pytest
+from jbf import Drive, Rig, Run, diagnose
 from point_to_point import TRUTH, point_to_point
 
 
@@ -14,3 +15,16 @@ def test_holding_force_between_moves_causes_neither_an_effect_nor_residual_struc
         parameter = found.model.parameters[name]
         assert parameter.stderr is not None
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
+
+
+def test_lag_of_the_load_cell_is_named_instead_of_a_corrected_delay() -> None:
+    """A low-pass filter of six samples; without it, a delay of its time constant is corrected."""
+    runs = [
+        Run.from_arrays(run.time_s, None, run.friction, position_m=run.position_m, name=run.name)
+        for run in point_to_point([6, 7], duration_s=12.0, lag_s=0.012)
+    ]
+    found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
+    assert found.effects == ("sensor_lag",), found.summary()
+    assert found.model.parameters["sensor_lag.tau_s"].value == pytest.approx(0.012, rel=0.02)
+    for name, true in TRUTH.items():
+        assert found.model.parameters[name].value == pytest.approx(true, rel=0.01), name

@@ -16,6 +16,7 @@ from jbf.estimation.generalised_least_squares import with_motion_errors
 from jbf.estimation.likelihood import next_step_gain
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
+from slides import numbers_in
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "simulator"))
 
@@ -119,23 +120,12 @@ def test_verdict_is_unexplained_if_the_friction_level_differs_by_stroke() -> Non
     assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
 
 
-def test_effects_that_distort_a_force_are_not_tried_if_the_acceleration_is_uncertain() -> None:
-    """A delay averages errors of the acceleration, a bent sensor follows those at its peaks."""
-    reasons = diagnosed(4010).not_tried
-    filters = ("sensor_lag", "time_delay", "sensor_hysteresis", "backlash", "drive_compliance")
-    for name in (*filters, "sensor_nonlinearity"):
-        assert "errors of the acceleration" in reasons[name]
-
-
-def test_errors_of_the_motion_are_proposed_without_effects_that_they_make_untestable() -> None:
-    """The nonlinearity of a sensor follows errors of the acceleration at its peaks."""
-    candidates = Candidates(Campaign.prepare(*recorded(5011)), "coulomb", "journal")
-    for effects in (("inertia",), ("inertia", "sensor_nonlinearity")):
-        proposed = re_estimated_motion(candidates, effects)
-        assert proposed is not None
-        campaign, remaining = proposed
-        assert remaining == ("inertia",)
-        assert campaign.motion_share > 0.1 > candidates.campaign.motion_share
+def test_effect_that_describes_errors_of_the_acceleration_is_not_named() -> None:
+    """The estimated acceleration is too small at abrupt changes, as with a bent sensor."""
+    found = diagnosed(4925, ("pitch_ripple",))
+    assert (found.verdict, found.effects) == ("missing", ("pitch_ripple",)), found.summary()
+    reasons = {t.effect: t.reason for step in found.steps for t in step.trials}
+    assert "errors of the acceleration" in reasons["sensor_nonlinearity"]
 
 
 def test_errors_of_the_motion_are_proposed_with_a_delay_of_the_recording() -> None:
@@ -209,6 +199,21 @@ def test_no_filter_is_named_where_it_would_smooth_the_errors_of_the_acceleration
     assert (diagnosis.verdict, diagnosis.effects) == ("adequate", ()), diagnosis.summary()
     inertia = diagnosis.fit["inertia.m_e"]
     assert abs(inertia.value - 0.043) < 3.0 * inertia.stderr
+
+
+def test_summary_states_the_share_of_the_errors_of_the_motion() -> None:
+    """The torque has a noise of 0.02 N m; the rest of the error is that of the acceleration."""
+    torques = {"up": lambda t: 5.0, "down": lambda t: -5.0, "ramp": lambda t: 0.5 * t}
+    runs = []
+    for seed, (name, torque) in enumerate(torques.items(), 7):
+        run = from_rest(name, torque, 8.0, seed)
+        runs.append(
+            jbf.Run.from_arrays(run.time_s, None, run.friction, angle_rad=run.angle_rad, name=name)
+        )
+    found = jbf.diagnose(jbf.Rig(drive=jbf.Drive("rotary", "torque")), runs, law="coulomb")
+    (percent,) = numbers_in(r"estimated motion are (\d+) % of the mean", found.summary())
+    other = (0.02 / found.steps[-1].rms) ** 2
+    assert percent == pytest.approx(100.0 * (1.0 - other), abs=12.0), found.summary()
 
 
 def campaign_of(seed: int) -> tuple[servosim.Campaign, Campaign]:

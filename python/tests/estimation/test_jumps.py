@@ -230,16 +230,26 @@ def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversa
     [
         ([1.0, 1.0, -1.0, -1.0, -1.0], (), 2),
         ([1.0, 0.1, -0.1, -1.0, -1.0], (1, 2), 1),
-        # A stop between two directions is not a reversal, and neither is a start.
-        ([1.0, 0.0, -1.0, -1.0, -1.0], (), None),
-        ([0.0, 1.0, 1.0, 2.0, 2.0], (), None),
-        ([1.0, 0.0, 0.0, 1.0, -1.0], (), 4),
+        # A rest in either direction, also at the beginning of a run.
+        ([1.0, 0.0, -1.0, -1.0, -1.0], (), 1),
+        ([0.0, 1.0, 1.0, 2.0, 2.0], (), 1),
+        ([1.0, 1.0, 0.0, 1.0, 1.0], (), 2),
+        ([1.0, 1.0, 1.0, 2.0, 2.0], (), None),
     ],
 )
-def test_reversal_is_a_sign_change_without_a_rest(velocity: Any, unknown: Any, first: Any) -> None:
+def test_force_is_uncertain_after_a_reversal_or_a_rest(
+    velocity: Any, unknown: Any, first: Any
+) -> None:
     p = prepared(velocity, unknown=unknown)
     found = np.flatnonzero(timing_errors(p, ramp(p), 1e-9))
     assert (int(found[0]) if len(found) else None) == first
+
+
+def test_force_after_a_rest_is_excluded_while_it_changes() -> None:
+    p = prepared([1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+    found = timing_errors(p, np.minimum(ramp(p), ramp(p)[6]), 1e-9)
+    assert np.isinf(found).tolist() == [False] + [True] * 6 + [False] * 3
+    np.testing.assert_array_equal(found[[0, 7, 8, 9]], 0.0)
 
 
 def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:

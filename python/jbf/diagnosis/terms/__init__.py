@@ -16,8 +16,11 @@ effects.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.residual_structure import find_residual_structure
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_force, variance_by_run
@@ -25,7 +28,11 @@ from jbf.diagnosis.terms.proposal import Model, Proposal, Term, is_accepted
 from jbf.diagnosis.terms.quantiser import quantiser
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
 from jbf.diagnosis.terms.shifts import without_delay
-from jbf.estimation.campaign import Campaign
+from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
+from jbf.estimation.generalised_least_squares import without_motion_corrections
+from jbf.estimation.posterior_motions import corrected_delay_s
+from jbf.estimation.solution import Solution
+from jbf.models.delayed_reading import DELAY
 
 COMPETING: tuple[Term, ...] = (errors_of_motion, random_effect)
 """Terms that compete with the effects.
@@ -49,15 +56,32 @@ if no effect is accepted.
 """
 
 
+class Update(NamedTuple):
+    """Change of the observation model.
+
+    Attributes
+    ----------
+    campaign
+        The campaign with the changed term.
+    effects
+        Effects of the model that the term was estimated with.
+    solution
+        Its fit with the changed term; None if the term was removed.
+    """
+
+    campaign: Campaign
+    effects: Names
+    solution: Solution | None
+
+
 def best_term_update(
     candidates: Candidates, present: Names, min_evidence: float | None = None
-) -> tuple[Campaign, Names] | None:
+) -> Update | None:
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
     `min_evidence` is the evidence of an accepted effect: only the terms `COMPETING` are tried, and
-    they must have more. If it is None, all terms are tried, and a random effect that is no longer
-    significant is removed. Returns the changed campaign and the effects that remain in the model;
-    None if no term changes.
+    they must have more. If it is None, all terms are tried, a random effect that is no longer
+    significant is removed, and an effect may replace a corrected delay. None if no term changes.
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
@@ -67,41 +91,52 @@ def best_term_update(
     if explained and min_evidence is None:
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
         estimates.append((delays(reduced), reduced))
+    if min_evidence is None and find_residual_structure(full.problem, full.solution, full.policy):
+        delayed = _with_effect_instead_of_delay(candidates, present)
+        estimates += [] if delayed is None else [(errors_of_motion(delayed), delayed)]
     proposals = [(p, model) for p, model in estimates if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
         if is_accepted(proposal, model, min_evidence or 0.0):
-            return proposal.campaign, proposal.problem.effects
+            return Update(proposal.campaign, proposal.problem.effects, proposal.solution)
     fewer = without_random_effect(full) if min_evidence is None else None
-    return None if fewer is None else (fewer, present)
+    return None if fewer is None else Update(fewer, present, None)
 
 
-def re_estimated_motion(candidates: Candidates, present: Names) -> tuple[Campaign, Names] | None:
-    """Campaign with the errors of the motion estimated again, and the effects that remain.
-
-    None if the estimated errors are not accepted.
-    """
+def re_estimated_motion(candidates: Candidates, present: Names) -> Update | None:
+    """Estimate the errors of the motion again; None if they are not accepted."""
     proposal = _errors_of_motion(candidates, present)
     if proposal is None or not is_accepted(proposal, _model(candidates, present, present)):
         return None
-    return proposal.campaign, proposal.problem.effects
+    return Update(proposal.campaign, proposal.problem.effects, proposal.solution)
+
+
+def _with_effect_instead_of_delay(candidates: Candidates, present: Names) -> Model | None:
+    """Add the effect that best explains the force without the correction of a common delay.
+
+    A lag of the sensor, play or compliance delays the force. With the delay corrected, their
+    influence is small, and they have no evidence. None without a correction or such an effect.
+    """
+    if corrected_delay_s(candidates.campaign) == 0.0:
+        return None
+    names = set(candidates.addable(without_delay(present))) & DISTORTS_FORCE - {DELAY}
+    models = [_model(candidates, (*present, name), present) for name in sorted(names)]
+    return min(
+        models,
+        key=lambda m: without_motion_corrections(m.problem, m.solution)[1].rms,
+        default=None,
+    )
 
 
 def _errors_of_motion(candidates: Candidates, present: Names) -> Proposal | None:
     """Estimate the errors of the motion, once for each set of effects.
 
-    The effect `time_delay` is omitted, since a common delay is estimated with the errors. Effects
-    that are not testable with the estimated errors are omitted as well, and the errors estimated
-    again.
+    The effect `time_delay` is omitted, since a common delay is estimated with the errors.
     """
     fitted = candidates.fitted(present)
     if not fitted.motion_estimated and candidates.campaign.rig.drive is not None:
-        effects = without_delay(present)
-        proposal = errors_of_motion(_model(candidates, effects, present))
-        while proposal is not None and proposal.campaign.testable(effects) != effects:
-            effects = proposal.campaign.testable(effects)
-            proposal = errors_of_motion(_model(candidates, effects, present))
-        fitted.motion_proposal, fitted.motion_estimated = proposal, True
+        model = _model(candidates, without_delay(present), present)
+        fitted.motion_proposal, fitted.motion_estimated = errors_of_motion(model), True
     return fitted.motion_proposal
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from jbf.arrays import Names
 from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.directions import RichestResidual
-from jbf.diagnosis.fit_state import Fitted, Reached
+from jbf.diagnosis.fit_state import MOTION, Fitted, Reached
 from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.approach import Approach, approach, many_peaks
@@ -87,7 +87,8 @@ class Candidates:
         again._level = self._level
         if effects is not None:
             fitted = again.fitted(effects)
-            fitted.motion_estimated = campaign.samples.motion is not self.campaign.samples.motion
+            if campaign.samples.motion is not self.campaign.samples.motion:
+                fitted.proposals[MOTION] = None
             if solution is not None:
                 fitted.solution, fitted.state = solution, "ranked"
         return again

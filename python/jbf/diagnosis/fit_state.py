@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from jbf.diagnosis.candidates import Candidates
     from jbf.diagnosis.terms.proposal import Proposal
 
+MOTION, INSTEAD_OF_DELAY = "motion", "instead of a delay"
 State = Literal["posed", "looked", "ranked", "converged"]
 
 
@@ -55,9 +56,9 @@ class Fitted:
         Held-out predictions of the runs; empty until they are required.
     halves
         Held-out predictions of two halves of a run, by (run, alternate).
-    motion_proposal, motion_estimated
-        Errors of the motion re-estimated with these effects, None if they do not change; and
-        whether they have been estimated.
+    proposals
+        Terms estimated for this model, None where they do not change: errors of the motion
+        (`MOTION`), and these errors with a further effect instead of a delay (`INSTEAD_OF_DELAY`).
     """
 
     problem: Problem
@@ -73,8 +74,7 @@ class Fitted:
     peaks_searched: bool = False
     held_out: list[HeldOutPart] = field(default_factory=list)
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
-    motion_proposal: Proposal | None = None
-    motion_estimated: bool = False
+    proposals: dict[str, Proposal | None] = field(default_factory=dict)
 
     @cached_property
     def default_starts(self) -> list[dict[str, float]]:

@@ -24,7 +24,7 @@ from jbf.diagnosis.experiment_design.next_run import (
     propose_detection_run,
     undetectable_effects,
 )
-from jbf.diagnosis.fit_state import Reached
+from jbf.diagnosis.fit_state import MOTION, Reached
 from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
@@ -277,7 +277,7 @@ def _with_law(
     if with_motion_errors is not None:
         candidates = candidates.with_campaign(with_motion_errors)
         # They are not estimated again without the superfluous machine terms.
-        candidates.fitted(start_model(candidates)).motion_estimated = True
+        candidates.fitted(start_model(candidates)).proposals[MOTION] = None
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, of_selection = selected.present, selected.steps, selected.remainders

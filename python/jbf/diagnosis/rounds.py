@@ -302,7 +302,8 @@ def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -
 def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
     """Create the step of the ledger for a model: its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
-    noise_rms = noise_floor(candidates.campaign.prepared, solution.samples)
+    # The residual contains the noise, and limits its estimate from the records.
+    noise_rms = min(noise_floor(candidates.campaign.prepared, solution.samples), solution.rms)
     held_out_n = candidates.held_out_rms(effects)
     beyond = _extrapolations(candidates, effects)
     return Step(effects, solution.rms, held_out_n, noise_rms, trials, beyond)

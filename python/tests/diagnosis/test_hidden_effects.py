@@ -48,14 +48,8 @@ def test_effect_hidden_in_a_bearing_is_named_and_the_error_falls_to_the_noise(na
         assert last.held_out_rms < 1.06 * noise_rms
 
 
-OVERESTIMATED = pytest.mark.xfail(strict=True, reason="noise floor of this campaign is 27 % high")
-
-
 @pytest.mark.extended
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=OVERESTIMATED if n == "vogel_viscosity" else ()) for n in EFFECTS],
-)
+@pytest.mark.parametrize("name", EFFECTS)
 def test_noise_floor_of_a_diagnosis_is_the_noise_of_the_simulation(name: str) -> None:
     found, noise_rms = _diagnosis(name)
     assert found.steps[-1].noise_rms == pytest.approx(noise_rms, rel=0.08)

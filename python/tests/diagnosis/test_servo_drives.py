@@ -9,6 +9,7 @@ import jbf
 import numpy as np
 import pytest
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.fit_state import MOTION
 from jbf.diagnosis.terms import re_estimated_motion
 from jbf.diagnosis.which_law import held_out_errors
 from jbf.estimation.campaign import Campaign
@@ -132,7 +133,7 @@ def test_errors_of_the_motion_are_proposed_with_a_delay_of_the_recording() -> No
     """Both an effect and the recording can have a delay, which would then be estimated twice."""
     candidates = Candidates(Campaign.prepare(*recorded(4060)), "coulomb", "journal")
     assert re_estimated_motion(candidates, ("inertia", "time_delay")) is None
-    proposal = candidates.fitted(("inertia", "time_delay")).motion_proposal
+    proposal = candidates.fitted(("inertia", "time_delay")).proposals[MOTION]
     assert proposal is not None
     assert proposal.problem.effects == ("inertia",)
 

@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.fit_state import INSTEAD_OF_DELAY, MOTION
 from jbf.diagnosis.residual_structure import find_residual_structure
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
@@ -91,9 +92,8 @@ def best_term_update(
     if explained and min_evidence is None:
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
         estimates.append((delays(reduced), reduced))
-    if min_evidence is None and find_residual_structure(full.problem, full.solution, full.policy):
-        delayed = _with_effect_instead_of_delay(candidates, present)
-        estimates += [] if delayed is None else [(errors_of_motion(delayed), delayed)]
+    if min_evidence is None:
+        estimates.append((_effect_instead_of_delay(candidates, present), full))
     proposals = [(p, model) for p, model in estimates if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
@@ -111,21 +111,28 @@ def re_estimated_motion(candidates: Candidates, present: Names) -> Update | None
     return Update(proposal.campaign, proposal.problem.effects, proposal.solution)
 
 
-def _with_effect_instead_of_delay(candidates: Candidates, present: Names) -> Model | None:
-    """Add the effect that best explains the force without the correction of a common delay.
+def _effect_instead_of_delay(candidates: Candidates, present: Names) -> Proposal | None:
+    """Propose the effect that best explains the force without the correction of a common delay.
 
     A lag of the sensor, play or compliance delays the force. With the delay corrected, their
-    influence is small, and they have no evidence. None without a correction or such an effect.
+    influence is small, and they have no evidence. None without a correction, without residual
+    structure or without such an effect.
     """
-    if corrected_delay_s(candidates.campaign) == 0.0:
-        return None
-    names = set(candidates.addable(without_delay(present))) & DISTORTS_FORCE - {DELAY}
-    models = [_model(candidates, (*present, name), present) for name in sorted(names)]
-    return min(
-        models,
-        key=lambda m: without_motion_corrections(m.problem, m.solution)[1].rms,
-        default=None,
-    )
+    fitted = candidates.fitted(present)
+    if INSTEAD_OF_DELAY not in fitted.proposals:
+        proposal, full = None, _model(candidates, present, present)
+        names = set(candidates.addable(without_delay(present))) & DISTORTS_FORCE - {DELAY}
+        delayed = names and corrected_delay_s(candidates.campaign) != 0.0
+        if delayed and find_residual_structure(full.problem, full.solution, full.policy):
+            models = [_model(candidates, (*present, name), present) for name in sorted(names)]
+            proposal = errors_of_motion(min(models, key=_uncorrected_rms))
+        fitted.proposals[INSTEAD_OF_DELAY] = proposal
+    return fitted.proposals[INSTEAD_OF_DELAY]
+
+
+def _uncorrected_rms(model: Model) -> float:
+    """RMS of an ordinary fit of the model without corrected delays, N."""
+    return without_motion_corrections(model.problem, model.solution)[1].rms
 
 
 def _errors_of_motion(candidates: Candidates, present: Names) -> Proposal | None:
@@ -134,10 +141,10 @@ def _errors_of_motion(candidates: Candidates, present: Names) -> Proposal | None
     The effect `time_delay` is omitted, since a common delay is estimated with the errors.
     """
     fitted = candidates.fitted(present)
-    if not fitted.motion_estimated and candidates.campaign.rig.drive is not None:
+    if MOTION not in fitted.proposals and candidates.campaign.rig.drive is not None:
         model = _model(candidates, without_delay(present), present)
-        fitted.motion_proposal, fitted.motion_estimated = errors_of_motion(model), True
-    return fitted.motion_proposal
+        fitted.proposals[MOTION] = errors_of_motion(model)
+    return fitted.proposals.get(MOTION)
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:

@@ -45,6 +45,12 @@ class Selection:
         "ratio of RMS values below which such a candidate counts as fitting better",
         "convention",
     )
+    min_size_ratio: float = documented(
+        0.1,
+        "RMS that an effect explains, relative to that of the largest residual structure, below "
+        "which it is not named",
+        "an error of a tenth in the description of this structure",
+    )
     confounder_ratio: float = documented(
         20.0,
         "minimum ratio of an effect's gain to the disagreement of the runs on its parameters for "

@@ -50,9 +50,9 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
 def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
     """Find the effects that are not named because they may imitate another mechanism.
 
-    These are effects whose parameters differ between runs, and effects of weak evidence that
-    explain less than the largest residual structure of the model (`remains`) and may imitate a part
-    of it.
+    These are effects whose parameters differ between runs, and effects that may imitate a part of
+    the largest residual structure of the model (`remains`): those that explain much less, or, with
+    weak evidence, less than this structure.
     """
     full, problem = candidates.converge(present), candidates.fitted(present).problem
     share, policy = candidates.independent_share(full), candidates.policy
@@ -71,7 +71,8 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
         disagrees = test.beyond_chance(policy) and decrease <= least
         explained = 1.0 - (full.rms / rest.rms) ** 2
         weak = gain - candidates.price(full.free - rest.free) <= policy.selection.weak_evidence
-        if (weak and explained < largest) or disagrees:
+        size_ratio = 1.0 if weak else policy.selection.min_size_ratio
+        if explained < size_ratio**2 * largest or disagrees:
             doubted.append(name)
     return tuple(doubted)
 

@@ -214,3 +214,15 @@ def test_effect_is_named_only_if_a_parameter_of_it_is_estimated(
     (effect,) = {name.partition(".")[0] for name in values}
     unnamed = effects_without_estimate(values, (effect,), DEFAULT)
     assert unnamed == (() if named else (effect,))
+
+
+def test_effect_with_strong_evidence_is_a_confounder_if_it_is_much_smaller_than_the_structure() -> (
+    None
+):
+    """The ratio of sizes is set just below and just above that of this campaign."""
+    candidates = _candidates(lambda i, t: 0.08)
+    rms, rms_without = (candidates.converge(effects).rms for effects in ((OFFSET,), ()))
+    size_ratio = float(np.sqrt((1.0 - (rms / rms_without) ** 2) / 0.9))
+    for share, doubted in ((0.999, ()), (1.001, (OFFSET,))):
+        candidates.policy = DEFAULT.with_values({"selection.min_size_ratio": share * size_ratio})
+        assert confounders(candidates, (OFFSET,), [Remainder("time", "", 0.9)]) == doubted

@@ -12,7 +12,7 @@ from jbf.comparison.patterns import Failure, find_failures
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import Samples
-from jbf.estimation.uncertain_samples import active_effects, samples_near_jumps
+from jbf.estimation.uncertain_samples import active_effects, samples_near_jumps, time_constant
 from jbf.models.catalogue import parameters_of, transition_speed
 from jbf.models.chain import chain, warn_of_fast_film
 from jbf.models.model import Model
@@ -120,7 +120,10 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     predictions = predicted(model, campaign)
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)
-    samples = samples_near_jumps(campaign.samples, campaign.prepared, predictions, effects)
+    spread_s = time_constant(effects, pages, model.values)
+    samples = samples_near_jumps(
+        campaign.samples, campaign.prepared, predictions, effects, spread_s
+    )
     residuals = [p.friction - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign.prepared, samples)
     runs = tuple(

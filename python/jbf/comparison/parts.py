@@ -52,7 +52,7 @@ def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
 
 
 def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
-    """Effects of a model that are not friction, such as inertia, weight, offset and cogging."""
+    """Effects of a model that are not friction, such as inertia, weight, spring and cogging."""
     return tuple(name for name in NO_FRICTION if name in comparison.model.effects)
 
 

@@ -17,7 +17,7 @@ from jbf.estimation.likelihood import (
     share_of_gain,
 )
 from jbf.estimation.noise import WHITE
-from jbf.estimation.samples import common_samples
+from jbf.estimation.samples import Samples, common_samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
@@ -48,8 +48,8 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if describes_motion_errors(richer, simpler):
-        gain = min(gain, price)
+    if distorts_motion_errors(richer, simpler):
+        gain = min(gain, 0.0)
     return gain - price
 
 
@@ -62,7 +62,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     if (
         _adds_idle_effect(candidates, richer, simpler)
         or _differ_by_less_than_quantisation(candidates.campaign, richer, simpler)
-        or describes_motion_errors(richer, simpler)
+        or distorts_motion_errors(richer, simpler)
     ):
         return 0.0
     richer, simpler = replace(richer, noise=WHITE), replace(simpler, noise=WHITE)
@@ -79,18 +79,33 @@ def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solutio
     return bool(set(idle) - set(simpler.effects))
 
 
-def describes_motion_errors(richer: Solution, simpler: Solution) -> bool:
-    """Whether an added effect that distorts the force may describe errors of the motion only.
+def distorts_motion_errors(richer: Solution, simpler: Solution) -> bool:
+    """Whether an added effect distorts the force and may describe errors of the motion only."""
+    if not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
+        return False
+    samples = common_samples(richer.samples, simpler.samples)
+    rms, rms_without = (samples.rms(s.residuals) for s in (richer, simpler))
+    return may_describe_motion_errors(rms, rms_without, samples)
+
+
+def may_describe_motion_errors(rms: float, rms_without: float, samples: Samples) -> bool:
+    """Whether an effect that distorts the force may describe errors of the motion only.
 
     Such an effect filters the predicted force, and with it the errors of the motion. The whitening
     assumes unfiltered errors, and the likelihood of the effect may be too large. An effect that
-    describes these errors leaves the other part of the mean square of the residuals.
+    explained exactly these errors would leave the mean square without their share.
+
+    Parameters
+    ----------
+    rms, rms_without
+        RMS of the residuals with and without the effect, N.
+    samples
+        The samples, with the errors of the motion.
     """
-    samples = common_samples(richer.samples, simpler.samples)
-    if samples.motion is None or not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
+    if samples.motion is None:
         return False
     other_part = 1.0 - samples.motion.variance_share(samples.weight)
-    return samples.square(richer.residuals) > other_part * samples.square(simpler.residuals)
+    return rms**2 > other_part * rms_without**2
 
 
 def _differ_by_less_than_quantisation(

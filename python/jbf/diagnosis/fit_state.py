@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from jbf.diagnosis.candidates import Candidates
     from jbf.diagnosis.terms.proposal import Proposal
 
-MOTION, INSTEAD_OF_DELAY = "motion", "instead of a delay"
+MOTION, INSTEAD_OF_ERRORS = "motion", "instead of errors"
 State = Literal["posed", "looked", "ranked", "converged"]
 
 
@@ -58,7 +58,7 @@ class Fitted:
         Held-out predictions of two halves of a run, by (run, alternate).
     proposals
         Terms estimated for this model, None where they do not change: errors of the motion
-        (`MOTION`), and these errors with a further effect instead of a delay (`INSTEAD_OF_DELAY`).
+        (`MOTION`), and these errors with a further effect (`INSTEAD_OF_ERRORS`).
     """
 
     problem: Problem

@@ -91,7 +91,7 @@ class Step:
     held_out_rms
         RMS of the held-out prediction errors, over runs or parts of runs, N.
     noise_rms
-        Noise floor, N; zero if unknown.
+        Noise floor, N, at most the RMS of the final model; zero if unknown.
     trials
         Results of the candidates for the next addition.
     extrapolations

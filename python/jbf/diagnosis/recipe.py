@@ -276,7 +276,7 @@ def _with_law(
     with_motion_errors = with_errors_of_motion(candidates)
     if with_motion_errors is not None:
         candidates = candidates.with_campaign(with_motion_errors)
-        # They are not estimated again without the superfluous machine terms.
+        # They are not estimated again for the start model, which has no superfluous terms.
         candidates.fitted(start_model(candidates)).proposals[MOTION] = None
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
@@ -298,6 +298,8 @@ def _with_law(
         if kept != steps[-1].effects:
             steps.append(step(candidates, kept, ()))
         steps[-1] = replace(steps[-1], rms=final.rms)
+        # The residual contains the noise, and limits its estimate from the records.
+        steps = [replace(s, noise_rms=min(s.noise_rms, final.rms)) for s in steps]
         fit = finish(candidates.fitted(kept).problem, final)
     uncertain = effects_without_estimate(fit.parameters, missing, policy)
     doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
@@ -310,7 +312,11 @@ def _with_law(
     if missing and not selected.not_tried and ALTERNATIVES in optional.omitted:
         where = f"{optional.omitted[ALTERNATIVES]}; alternatives to the effects were not tested"
         remains = (*remains, Remainder(SEARCH, where, 0.0))
-    posterior = {n: w for n, w in all_weights.items() if n in missing or len(w) > 1}
+    posterior = {
+        name: of_name
+        for name, of_name in all_weights.items()
+        if name in missing or (name in machine and len(of_name) > 1)
+    }
     alternatives = {name: tuple(w)[1:] for name, w in posterior.items()}
     tied = {name: others for name, others in alternatives.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))

@@ -43,7 +43,7 @@ def start_model(candidates: Candidates) -> Names:
 
 
 def machine_terms(candidates: Candidates) -> Names:
-    """Fit all machine terms of a drive that the runs can show jointly with the law.
+    """Fit the law together with all machine terms of a drive that these runs can test.
 
     The fit with each term starts from the fit without it, since a search from the starting values
     of all terms may end at a weight of zero.
@@ -61,8 +61,8 @@ def machine_terms(candidates: Candidates) -> Names:
 def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
     """Return a drive's campaign with the covariance of the motion's errors in the likelihood.
 
-    The errors are estimated with all machine terms, since without the errors an inertia may seem
-    unnecessary. The force is corrected by a time delay common to all runs. Returns None for a rig
+    The errors are estimated with all machine terms, since a fit that neglects them may reject an
+    inertia. The force is corrected by a time delay common to all runs. Returns None for a rig
     without a drive, or if these errors are negligible.
     """
     if candidates.campaign.rig.drive is None:
@@ -137,7 +137,7 @@ def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozense
             current = rest
             continue
         if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
-            continue  # inertia and weight do not imitate an effect; an offset may
+            continue  # not exchanged: if a spring is added, a superfluous weight is removed
         others = [o for o in candidates.addable(rest) if o != name and o not in unconfirmed]
         tie = candidates.policy.selection.tie
         costs = swap_costs(candidates, rest, others, full, simpler, max_loss=-tie, only_best=True)

@@ -149,7 +149,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                     present = tuple(n for n in present if n in re_estimated.effects)
                     visited, reviewed = {frozenset(present)}, set()
                 elif may_update:
-                    update = re_estimated  # the leader is a delay
+                    update = re_estimated  # the leader is `time_delay`: its delay is corrected
                 if update is None:
                     extended = _with_leader(candidates, present, trial_round)
         # If no effect is added, terms are added one by one, the largest evidence first. A term
@@ -168,8 +168,8 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                 more = ended and updates < policy.terms.max_updates
                 update = best_term_update(candidates, present) if more else None
             visited, reviewed, follow = {frozenset(present)}, set(), "promising"
-            # The model is tested again with these terms: that step replaces the last one.
-            if present == before:
+            # Without a further effect, the next step replaces this one.
+            if set(present) <= set(before):
                 steps.pop()
             continue
         # If neither an effect nor a term is added, effects may be exchanged or removed, once per
@@ -302,8 +302,7 @@ def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -
 def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
     """Create the step of the ledger for a model: its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
-    # The residual contains the noise, and limits its estimate from the records.
-    noise_rms = min(noise_floor(candidates.campaign.prepared, solution.samples), solution.rms)
+    noise_rms = noise_floor(candidates.campaign.prepared, solution.samples)
     held_out_n = candidates.held_out_rms(effects)
     beyond = _extrapolations(candidates, effects)
     return Step(effects, solution.rms, held_out_n, noise_rms, trials, beyond)

@@ -16,7 +16,7 @@ import numpy as np
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import (
-    describes_motion_errors,
+    distorts_motion_errors,
     evidence,
     evidence_on_common_samples,
     full_gain,
@@ -33,7 +33,7 @@ LESS = 0.95
 """Ratio of RMS values, with to without a candidate, from which the ledger reports a better fit."""
 CHANCE = "no significant gain"
 SLIGHT = "significant, but within the margin for recording artefacts"
-MOTION = "explains no more than errors of the acceleration may"
+OF_MOTION_ERRORS = "explains no more than the errors of the acceleration could"
 SMOOTH = "fits better, but the residual is so strongly correlated that this may be chance"
 
 
@@ -107,11 +107,12 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         reason = SMOOTH if rms < LESS * bare else CHANCE
         if gain > candidates.level.critical - candidates.price(1):
             reason = SLIGHT
-            if describes_motion_errors(candidate.solution, base):
-                reason = MOTION
         if gain <= 0.0 and gain > candidates.level.significant - candidates.price(1):
             outcome = "negligible"
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
+        enough = likelihood_gain(candidate.solution, base) > candidates.price(1)
+        if enough and distorts_motion_errors(candidate.solution, base):
+            reason = OF_MOTION_ERRORS
         if np.isfinite(candidate.limit):
             outcome = "rejected"
             reason = (

@@ -30,6 +30,7 @@ from jbf.estimation.uncertain_samples import (
     moves_jumps,
     samples_near_jumps,
     spreads_jumps,
+    time_constant,
     transient_masks,
 )
 from jbf.models.catalogue import (
@@ -250,7 +251,8 @@ class Problem:
         if unknown_start:
             transients = self.transient_samples(values, samples.rms(residuals))
             samples = samples.within([~mask for mask in transients])
-        return samples_near_jumps(samples, prepared, predicted, effects)
+        spread_s = time_constant(effects, self.parameters, values)
+        return samples_near_jumps(samples, prepared, predicted, effects, spread_s)
 
     def transient_samples(self, values: Array, noise_rms: float) -> list[Mask]:
         """Mask of the samples that depend on the initial state of their run, one mask per run.

@@ -11,9 +11,9 @@ This error is the standard error of the speed divided by the acceleration. The p
 is the change of the reading during the error of the time. It reduces the weights of the samples in
 a fit. Tests exclude samples for which it is a large part of the noise.
 
-The force at rest is unknown and may change at any time. If an effect spreads a jump, the readings
-after a rest contain this force. They are excluded while the change of the reading, at its rate at
-the sample during a fraction of the rest (`MOST`), is a large part of the noise.
+The force of a drive at rest is unknown and may change at any time. If an effect spreads a jump, the
+readings after a rest contain this force. They are excluded while the largest force of the run,
+decreasing with the time constant of the effect, is a large part of the noise.
 
 A film, the age of a contact, a contact that deflects, and a load cell with backlash have an unknown
 state at the start of a run. The influence of this state (initial-state transient) decays as the
@@ -84,11 +84,12 @@ def samples_near_jumps(
     prepared: Sequence[Prepared],
     predictions: Sequence[Array],
     effects: Sequence[str],
+    spread_s: float = 0.0,
 ) -> Samples:
     """Reduce the weights of samples at which the time of a predicted friction jump is uncertain.
 
     The weights are unchanged if the effects neither shift nor spread jumps. The effects must not be
-    at their null.
+    at their null. `spread_s` is the time constant with which they spread a jump (`time_constant`).
     """
     moves, spreads = moves_jumps(effects), spreads_jumps(effects)
     if not (moves or spreads):
@@ -104,7 +105,9 @@ def samples_near_jumps(
             w = w * _share(0.5 * change, _residual_rms(p, c, prediction))
         if spreads:
             noise_rms = _residual_rms(p, c, prediction)
-            error_n = timing_errors(p, prediction, settings.max_timing_error * noise_rms)
+            least_n = settings.max_timing_error * noise_rms
+            error_n = timing_errors(p, prediction, least_n)
+            error_n = np.where(after_rests(p, spread_s, least_n), np.inf, error_n)
             c, w = c & (error_n == 0.0), w * _share(error_n, noise_rms)
         counted.append(c)
         weight.append(w)
@@ -123,47 +126,74 @@ def _share(error_n: Array, noise_rms: float) -> Array:
 
 
 def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
-    """Standard error of a prediction after each reversal or rest, N, due to an uncertain time.
+    """Standard error of a prediction after each reversal, N, due to the uncertain reversal time.
 
-    The force at rest is unknown, and may have changed at any time during the rest; the error is
-    infinite. Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
+    Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
     """
     motion, time_s = p.motion, p.run.time_s
     errors = np.zeros(len(prediction))
     if len(prediction) < 3:
         return errors
     rate_n_s = np.abs(np.gradient(prediction, time_s))
-    befores, afters, rested = _reversals_and_rests(p)
+    befores, afters = _reversals(p)
     for k, (before, after) in enumerate(zip(befores, afters, strict=True)):
         between_s = float(time_s[after] - time_s[before])
-        error_s = MOST * between_s
-        if not rested[k]:
-            slope = float(abs(motion.velocity[after] - motion.velocity[before])) / between_s
-            error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
-            error_s = min(error / slope, error_s)
+        slope = float(abs(motion.velocity[after] - motion.velocity[before])) / between_s
+        error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
+        error_s = min(error / slope, MOST * between_s)
         last = befores[k + 1] if k + 1 < len(befores) else len(prediction)
         behind_n = error_s * rate_n_s[before + 1 : last + 1]
         # The error decays from where the sign is known again.
         small = np.flatnonzero(behind_n[after - before - 1 :] < least_n)
         if len(small):
             behind_n = behind_n[: after - before - 1 + int(small[0])]
-        errors[before + 1 : before + 1 + len(behind_n)] = np.inf if rested[k] else behind_n
+        errors[before + 1 : before + 1 + len(behind_n)] = behind_n
     return errors
 
 
-def _reversals_and_rests(p: Prepared) -> tuple[list[int], list[int], list[bool]]:
-    """Indices of the last sample before, and of the first sample after, each reversal or rest.
+def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
+    """Indices of the last sample before, and of the first sample after, each reversal.
 
-    The third result states for each whether it is a rest. The first sample of a run that begins
-    with a rest counts as the one before it.
+    Only reversals without a rest in between are included.
     """
     motion = p.motion
     directed = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity != 0.0))
-    if motion.resting[0]:
-        directed = np.append(0, directed)
-    rested = np.diff(np.cumsum(motion.resting)[directed]) > 0
-    ends = np.flatnonzero((np.diff(np.sign(motion.velocity[directed])) != 0.0) | rested)
-    return directed[ends].tolist(), directed[ends + 1].tolist(), rested[ends].tolist()
+    turned = np.flatnonzero(np.diff(np.sign(motion.velocity[directed])) != 0.0)
+    befores, afters = directed[turned], directed[turned + 1]
+    rests = np.concatenate(([0], np.cumsum(motion.resting)))
+    moving = rests[afters] == rests[befores]
+    return befores[moving].tolist(), afters[moving].tolist()
+
+
+def after_rests(p: Prepared, spread_s: float, least_n: float) -> Mask:
+    """Mask, shape (n,), of the samples of a drive that contain the unknown force at a rest.
+
+    The largest force of the run, decreasing from the end of the rest with the time constant
+    `spread_s`, is above `least_n` at these samples.
+    """
+    resting, time_s = p.motion.resting, p.run.time_s
+    if p.rig.drive is None or not np.any(resting):
+        return np.zeros(len(resting), dtype=bool)
+    largest_n = float(np.max(np.abs(p.friction)))
+    memory_s = spread_s * float(np.log(max(largest_n / max(least_n, 1e-300), 1.0)))
+    last_rest_s = np.maximum.accumulate(np.where(resting, time_s, -np.inf))
+    mask: Mask = time_s - last_rest_s <= memory_s
+    return mask
+
+
+def time_constant(
+    effects: Iterable[str], pages: Mapping[str, Parameter], values: Iterable[float]
+) -> float:
+    """Time constant with which the effects spread a friction jump, s.
+
+    `pages` and `values` are in the same order, that of the parameters' full names.
+    """
+    spreading = {name for name in effects if find_effect(name).spreads_jumps}
+    return sum(
+        value
+        for (name, page), value in zip(pages.items(), values, strict=True)
+        if name.partition(".")[0] in spreading and page.unit == "s"
+    )
 
 
 @dataclass(frozen=True)

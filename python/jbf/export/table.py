@@ -169,7 +169,7 @@ def _terms(reference: Reference) -> tuple[Term, ...]:
         if name in instrument(model):
             status, how = "external", "property of the recording"
         elif name in BODY:
-            status, how = "external", "feedforward of acceleration or weight"
+            status, how = "external", "feedforward of acceleration, weight or spring"
         elif name in COGGING:
             how = "cogging map, linear between positions"
         elif name in _LOST:

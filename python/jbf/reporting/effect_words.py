@@ -17,7 +17,7 @@ def summary_of(effect: Effect, terms: Quantities) -> str:
     inertia = "inertia" if terms.motion == "rotary" else "mass"
     descriptions = {
         "sensor_offset": f"offset of {terms.sensor}, or a constant {terms.noun} "
-        "(gravity on an inclined axis, a spring, a counterweight)",
+        "(gravity on an inclined axis, a counterweight)",
         "sensor_drift": f"zero of {terms.sensor} drifts linearly during a run",
         "sensor_lag": f"{terms.sensor} or its filter follows the {terms.noun} with a time lag",
         "sensor_hysteresis": f"{terms.sensor} reads less while the {terms.noun} rises than while "

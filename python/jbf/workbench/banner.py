@@ -87,7 +87,8 @@ def _of_diagnosis(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["verdict"] == "missing":
         return f"{included} Nothing else is missing."
     if diagnosis["verdict"] == "ambiguous":
-        ties = [[e, *others] for e, others in diagnosis["alternatives"].items() if others]
+        alternatives = diagnosis["alternatives"].items()
+        ties = [[e, *others] for e, others in alternatives if others and e in effects]
         words = "; ".join(listed(tie) for tie in ties)
         return f"{included} These runs cannot distinguish {words}."
     return f"{included} {headline.removeprefix(f'Missing: {listed(effects)}. ')}"

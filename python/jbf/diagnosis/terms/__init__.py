@@ -20,7 +20,8 @@ from typing import NamedTuple
 
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.fit_state import INSTEAD_OF_DELAY, MOTION
+from jbf.diagnosis.evidence import may_describe_motion_errors
+from jbf.diagnosis.fit_state import INSTEAD_OF_ERRORS, MOTION
 from jbf.diagnosis.residual_structure import find_residual_structure
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
@@ -82,7 +83,7 @@ def best_term_update(
 
     `min_evidence` is the evidence of an accepted effect: only the terms `COMPETING` are tried, and
     they must have more. If it is None, all terms are tried, a random effect that is no longer
-    significant is removed, and an effect may replace a corrected delay. None if no term changes.
+    significant is removed, and an effect may replace errors of the motion. None if no term changes.
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
@@ -93,7 +94,7 @@ def best_term_update(
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
         estimates.append((delays(reduced), reduced))
     if min_evidence is None:
-        estimates.append((_effect_instead_of_delay(candidates, present), full))
+        estimates.append((_effect_instead_of_errors(candidates, present), full))
     proposals = [(p, model) for p, model in estimates if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
@@ -111,27 +112,36 @@ def re_estimated_motion(candidates: Candidates, present: Names) -> Update | None
     return Update(proposal.campaign, proposal.problem.effects, proposal.solution)
 
 
-def _effect_instead_of_delay(candidates: Candidates, present: Names) -> Proposal | None:
-    """Propose the effect that best explains the force without the correction of a common delay.
+def _effect_instead_of_errors(candidates: Candidates, present: Names) -> Proposal | None:
+    """Propose the effect that best explains what is attributed to errors of the motion.
 
-    A lag of the sensor, play or compliance delays the force. With the delay corrected, their
-    influence is small, and they have no evidence. None without a correction, without residual
-    structure or without such an effect.
+    A lag of the sensor, play or compliance delays the force. With a delay corrected, or with large
+    errors of the acceleration, little of their influence remains. The effect that fits best without
+    these is proposed with errors estimated again. None if the errors are small without a delay, if
+    no residual structure remains, or if the effect may describe errors of the motion only.
     """
-    fitted = candidates.fitted(present)
-    if INSTEAD_OF_DELAY not in fitted.proposals:
+    fitted, campaign = candidates.fitted(present), candidates.campaign
+    if INSTEAD_OF_ERRORS not in fitted.proposals:
         proposal, full = None, _model(candidates, present, present)
-        names = set(candidates.addable(without_delay(present))) & DISTORTS_FORCE - {DELAY}
-        delayed = names and corrected_delay_s(candidates.campaign) != 0.0
-        if delayed and find_residual_structure(full.problem, full.solution, full.policy):
-            models = [_model(candidates, (*present, name), present) for name in sorted(names)]
-            proposal = errors_of_motion(min(models, key=_uncorrected_rms))
-        fitted.proposals[INSTEAD_OF_DELAY] = proposal
-    return fitted.proposals[INSTEAD_OF_DELAY]
+        rest, most = without_delay(present), full.policy.selection.max_effects
+        names = set(candidates.addable(rest)) & DISTORTS_FORCE - {DELAY}
+        largest_share = campaign.settings.motion.max_small_share
+        large = corrected_delay_s(campaign) != 0.0 or campaign.motion_share > largest_share
+        if (large and names and len(rest) < most) and find_residual_structure(
+            full.problem, full.solution, full.policy
+        ):
+            models = [_model(candidates, (*rest, name), present) for name in sorted(names)]
+            proposal = errors_of_motion(min(models, key=_rms_without_correction))
+        if proposal is not None and may_describe_motion_errors(
+            proposal.solution.rms, full.solution.rms, proposal.campaign.samples
+        ):
+            proposal = None
+        fitted.proposals[INSTEAD_OF_ERRORS] = proposal
+    return fitted.proposals[INSTEAD_OF_ERRORS]
 
 
-def _uncorrected_rms(model: Model) -> float:
-    """RMS of an ordinary fit of the model without corrected delays, N."""
+def _rms_without_correction(model: Model) -> float:
+    """RMS of an ordinary fit of the model, without the correction of a common delay, N."""
     return without_motion_corrections(model.problem, model.solution)[1].rms
 
 

@@ -39,7 +39,7 @@ def loops(
     run
         Index or name of the run. Default: the run with the largest error.
     alone
-        Whether to subtract the model terms that are not friction: inertia, weight, spring, zero, cogging.
+        Whether to subtract the model terms that are not friction, such as inertia and weight.
     ax
         Matplotlib axes to draw on. Default: those of a new figure.
     """

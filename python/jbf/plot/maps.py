@@ -32,7 +32,7 @@ def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None 
     Parameters
     ----------
     alone
-        Whether to subtract the model terms that are not friction: inertia, weight, spring, zero, cogging.
+        Whether to subtract the model terms that are not friction, such as inertia and weight.
     """
     from matplotlib.colors import ListedColormap, LogNorm, to_rgb
 

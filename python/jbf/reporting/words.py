@@ -157,7 +157,7 @@ def drive_sentences(diagnosis: Diagnosis) -> str:
     share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
     if share >= SHOWN_SHARE:
         percent = f"{100.0 * share:.0f} %"
-        sentences.append(f"Errors of the estimated motion are {percent} of the mean square error.")
+        sentences.append(f"About {percent} of the mean square are errors of the estimated motion.")
     sentences += [
         f"In these runs {name} cannot be distinguished from {listed(alternatives, 'or')}."
         for name in diagnosis.machine

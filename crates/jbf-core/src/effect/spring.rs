@@ -30,7 +30,7 @@ described! {
                  zero in every run; the force at the position zero is sensor_offset",
         )
         .needs(&[Need::NoFilm, Need::Position]);
-    k = "k", "N/m", "stiffness; negative where the force moves the load away from zero",
+    k = "k", "N/m", "stiffness; negative if the spring pushes the load away from zero",
         [-1e9, 1e9], [1.0] null(0.0);
 }
 

@@ -32,8 +32,8 @@ values. It lists every term with its values, and the error is computed along you
 | exact | the same equation and values |
 | approximate | another equation, whose values are fitted or interpolated |
 | not carried | no element of the target; the loss contains the term |
-| not included | another part of the target (mass, weight, spring), or a property of the recording; not \
-part of the loss |
+| not included | another part of the target (mass, weight, spring), or a property of the \
+recording; not part of the loss |
 | refused | the target has no form for this rig, law or effect |
 """
 RIGS: Mapping[bool, jbf.Rig] = {

@@ -48,7 +48,7 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if distorts_motion_errors(richer, simpler):
+    if effect_may_describe_motion_errors(richer, simpler):
         gain = min(gain, 0.0)
     return gain - price
 
@@ -62,7 +62,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     if (
         _adds_idle_effect(candidates, richer, simpler)
         or _differ_by_less_than_quantisation(candidates.campaign, richer, simpler)
-        or distorts_motion_errors(richer, simpler)
+        or effect_may_describe_motion_errors(richer, simpler)
     ):
         return 0.0
     richer, simpler = replace(richer, noise=WHITE), replace(simpler, noise=WHITE)
@@ -79,8 +79,8 @@ def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solutio
     return bool(set(idle) - set(simpler.effects))
 
 
-def distorts_motion_errors(richer: Solution, simpler: Solution) -> bool:
-    """Whether an added effect distorts the force and may describe errors of the motion only."""
+def effect_may_describe_motion_errors(richer: Solution, simpler: Solution) -> bool:
+    """Whether an effect that was added to `simpler` may describe errors of the motion only."""
     if not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
     samples = common_samples(richer.samples, simpler.samples)

@@ -16,7 +16,7 @@ import numpy as np
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import (
-    distorts_motion_errors,
+    effect_may_describe_motion_errors,
     evidence,
     evidence_on_common_samples,
     full_gain,
@@ -111,7 +111,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "negligible"
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
         enough = likelihood_gain(candidate.solution, base) > candidates.price(1)
-        if enough and distorts_motion_errors(candidate.solution, base):
+        if enough and effect_may_describe_motion_errors(candidate.solution, base):
             reason = OF_MOTION_ERRORS
         if np.isfinite(candidate.limit):
             outcome = "rejected"

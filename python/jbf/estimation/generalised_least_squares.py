@@ -108,7 +108,9 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
     )
 
 
-def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+def fit_without_motion_corrections(
+    problem: Problem, solution: Solution
+) -> tuple[Problem, Solution]:
     """Fit by ordinary least squares, without corrected delays and corners located by the forces.
 
     It is the starting point for the errors of the motion of a model with other effects, which may
@@ -118,7 +120,7 @@ def without_motion_corrections(problem: Problem, solution: Solution) -> tuple[Pr
     delay_s = corrected_delay_s(campaign)
     if delay_s != 0.0:
         problem = shifted(problem, -delay_s)
-    else:
+    else:  # `shifted` also drops the errors of the motion
         without = replace(campaign, samples=replace(campaign.samples, motion=None))
         problem = problem.with_campaign(without)
     motions = [m and m.with_corners_located_by(None) for m in posteriors(problem)]

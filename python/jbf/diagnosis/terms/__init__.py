@@ -31,7 +31,7 @@ from jbf.diagnosis.terms.quantiser import quantiser
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
 from jbf.diagnosis.terms.shifts import without_delay
 from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
-from jbf.estimation.generalised_least_squares import without_motion_corrections
+from jbf.estimation.generalised_least_squares import fit_without_motion_corrections
 from jbf.estimation.posterior_motions import corrected_delay_s
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import DELAY
@@ -142,7 +142,7 @@ def _effect_instead_of_errors(candidates: Candidates, present: Names) -> Proposa
 
 def _rms_without_correction(model: Model) -> float:
     """RMS of an ordinary fit of the model, without the correction of a common delay, N."""
-    return without_motion_corrections(model.problem, model.solution)[1].rms
+    return fit_without_motion_corrections(model.problem, model.solution)[1].rms
 
 
 def _errors_of_motion(candidates: Candidates, present: Names) -> Proposal | None:

@@ -13,8 +13,8 @@ from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.generalised_least_squares import (
+    fit_without_motion_corrections,
     with_motion_errors,
-    without_motion_corrections,
 )
 from jbf.estimation.held_out import held_out_parts
 from jbf.estimation.held_out_comparison import predictive_deviance
@@ -35,7 +35,9 @@ def errors_of_motion(model: Model) -> Proposal | None:
     campaign, reference = model.campaign, model.reference
     if campaign.rig.drive is None:
         return None
-    again, after = with_motion_errors(*without_motion_corrections(model.problem, model.solution))
+    again, after = with_motion_errors(
+        *fit_without_motion_corrections(model.problem, model.solution)
+    )
     before, motion = campaign.samples.motion, after.samples.motion
     if before is None and motion is None:
         return None

@@ -14,6 +14,7 @@ import numpy as np
 from jbf.estimation.approach import approach
 from jbf.estimation.delayed_fits import (
     EVALUATIONS,
+    ROUNDS,
     DelayedFit,
     fit_with_delay,
     fit_with_errors,
@@ -137,24 +138,34 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
     the friction divided by the mass. The force of a hand may jump instead. The motions with and
     without these jumps are both fitted. The likeliest of these fits and `end` is returned
-    (`likeliest`). `first` is the problem before the correction of a delay.
+    (`likeliest`). Since corners and jumps depend on the parameters, they are located again with
+    those of the fit, as long as the likelihood increases. `first` is the problem before the
+    correction of a delay.
     """
     motion = end.solution.samples.motion
-    least = first.campaign.settings.motion.min_share
-    if motion is None or motion.variance_share(end.solution.samples.weight) < least:
+    settings = first.campaign.settings.motion
+    if motion is None or motion.variance_share(end.solution.samples.weight) < settings.min_share:
         return end
 
-    def fitted(with_jumps: bool) -> DelayedFit:
-        """Fit with the corners located, with or without jumps of the acceleration."""
-        located = with_corners_located_by_forces(
-            end.problem, end.solution, motion, with_jumps=with_jumps
+    def located(fit: DelayedFit, *, with_jumps: bool) -> DelayedFit:
+        """Fit with the corners located by the forces of `fit`, with or without jumps."""
+        moved = with_corners_located_by_forces(
+            fit.problem, fit.solution, fit.motion, with_jumps=with_jumps
         )
-        again = with_posteriors(first, posteriors(located))
-        near = near_solution(again, end.solution)
-        return fit_with_delay(again, near, end.delay_s, delayed=end.delayed)
+        again = with_posteriors(first, posteriors(moved))
+        near = near_solution(again, fit.solution)
+        return fit_with_delay(again, near, fit.delay_s, delayed=fit.delayed)
 
     at_once = fits_at_once(first.campaign, first.law, first.effects)
-    return likeliest([end, *in_parallel(fitted, (False, True), at_once)])
+    without, jumping = in_parallel(
+        lambda jumps: located(end, with_jumps=jumps), (False, True), at_once
+    )
+    best = likeliest([end, without, jumping])
+    with_jumps, rounds = best is jumping, 1
+    while best.deviance < end.deviance - settings.min_smoothness_gain and rounds < ROUNDS:
+        end, rounds = best, rounds + 1
+        best = likeliest([end, located(end, with_jumps=with_jumps)])
+    return best
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

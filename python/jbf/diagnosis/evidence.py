@@ -5,10 +5,12 @@ All values are in twice the log likelihood.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
+from jbf.estimation.generalised_least_squares import gain_with_less_smoothing
 from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.likelihood import (
     likelihood_gain,
@@ -133,3 +135,17 @@ def evidence_on_common_samples(
     values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
     refit = problem.solution(values, samples, noise_at(problem, samples, values))
     return min(gain, evidence(candidates, richer, refit, count_local_gain=count_local_gain))
+
+
+def evidence_with_less_smoothing(
+    candidates: Candidates, richer: Solution, simpler: Solution
+) -> float:
+    """Evidence for the richer of two models with a motion that is smoothed less.
+
+    Infinite without errors of the motion. See `gain_with_less_smoothing`.
+    """
+    if richer.samples.motion is None:
+        return math.inf
+    problems = [candidates.fitted(s.effects).problem for s in (richer, simpler)]
+    gain = gain_with_less_smoothing(problems[0], richer, problems[1], simpler)
+    return gain - candidates.price(richer.free - simpler.free)

@@ -19,6 +19,7 @@ from jbf.diagnosis.evidence import (
     effect_may_describe_motion_errors,
     evidence,
     evidence_on_common_samples,
+    evidence_with_less_smoothing,
     full_gain,
 )
 from jbf.diagnosis.ledger import Outcome, Trial
@@ -34,6 +35,7 @@ LESS = 0.95
 CHANCE = "no significant gain"
 SLIGHT = "significant, but within the margin for recording artefacts"
 OF_MOTION_ERRORS = "explains no more than the errors of the acceleration could"
+OF_SMOOTHING = "the gain disappears if the motion is smoothed less"
 SMOOTH = "fits better, but the residual is so strongly correlated that this may be chance"
 
 
@@ -121,9 +123,12 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             )
         elif gain > 0 and leader is None:
             confirmation = candidates.confirmation(present, name)
-            alone = evidence_on_common_samples(candidates, candidate.solution, base)
+            richer = candidate.solution
+            alone = evidence_on_common_samples(candidates, richer, base)
             if alone <= 0.0:
                 gain, reason = alone, "the gain comes from the samples that it excludes"
+            elif (rough := evidence_with_less_smoothing(candidates, richer, base)) <= 0.0:
+                gain, reason = rough, OF_SMOOTHING
             elif confirmation.confirms(gain, policy):
                 if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)

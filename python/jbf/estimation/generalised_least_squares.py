@@ -22,6 +22,7 @@ from jbf.estimation.delayed_fits import (
     likeliest,
     near_solution,
 )
+from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.minimum import MAX_EVALUATIONS, polish, settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
@@ -107,6 +108,22 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
     return search_solution(
         problem, samples, solution.values, solution.noise, EVALUATIONS, lines=near.lines
     )
+
+
+def gain_with_less_smoothing(
+    problem: Problem, solution: Solution, simpler_problem: Problem, simpler: Solution
+) -> float:
+    """Gain of a fit over a simpler one, both refitted with a motion that is smoothed less.
+
+    It is in twice the log likelihood, with the errors of the motion estimated from the richer fit.
+    Errors due to the smoothing, which the covariance of the motion's errors does not contain, are
+    largest where the motion changes abruptly and resemble friction at low speed.
+    """
+    richer = with_less_smoothing(problem, solution)
+    factor = problem.campaign.settings.motion.roughness_factor
+    rough = with_scaled_intensity(simpler_problem, factor, same_corners=True)
+    refitted = search_solution(rough, richer.samples, simpler.values, richer.noise, EVALUATIONS)
+    return likelihood_gain(richer, refitted)
 
 
 def fit_without_motion_corrections(

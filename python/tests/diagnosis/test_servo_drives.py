@@ -85,6 +85,8 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         pytest.param(4816, "cogging", marks=EXTENDED),
         # The delay of the force appears only when the effect is in the model.
         pytest.param(4735, "stribeck_excess", marks=EXTENDED),
+        # Errors of the smoothing next to reversals resemble a Stribeck peak.
+        (5123, "viscous_thinning"),
         # With an offset, friction that differs by direction in full fits as well.
         pytest.param(4771, "viscous_asymmetry", marks=EXTENDED),
     ],
@@ -114,6 +116,16 @@ def test_fit_of_a_drive_finds_the_simulated_parameters_from_all_starting_values(
     true = {n: getattr(plant if hasattr(plant, a) else hidden, a) for n, a in simulated.items()}
     for name, value in true.items():
         assert abs(fitted[name].value - value) < 3.0 * (fitted[name].stderr or 0.0)
+
+
+def test_fit_with_the_hidden_effect_is_likelier_than_the_nested_fit_without_it() -> None:
+    """The jumps of the acceleration at reversals, first estimated with too small a friction."""
+    rig, runs = recorded(5131, ("viscous_thinning",))
+    nested = jbf.fit(rig, runs, ["inertia"], law="coulomb")
+    fitted = jbf.fit(rig, runs, ["inertia", "viscous_thinning"], law="coulomb")
+    assert fitted.nobs == nested.nobs
+    assert fitted.loglik > nested.loglik
+    assert fitted.rms < nested.rms
 
 
 def test_verdict_is_unexplained_if_the_friction_level_differs_by_stroke() -> None:

@@ -341,11 +341,13 @@ class Candidates:
     def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
         """Compare the held-out errors of a model with and without one added effect.
 
-        For a run that alone determines a parameter, its halves are held out in turn, in both fits.
+        The halves of a run are held out in turn, in both fits, if it alone determines a parameter,
+        or if its speed or load is beyond the range of all others.
         """
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
-        halved = sorted(indispensable_runs(self.fitted(richer).problem, after))
+        indispensable = indispensable_runs(self.fitted(richer).problem, after)
+        halved = sorted(indispensable | {beyond.run for beyond in self.beyond})
         held_out, richer_held_out = (self.held_out_parts(e, halved) for e in (present, richer))
         names = tuple(self.campaign.samples.runs[i] for i in halved)
         prepared = self.campaign.prepared
@@ -375,13 +377,17 @@ class Candidates:
         """Runs whose speed or load is beyond the range of all others; empty for a single run."""
         return extrapolated_runs(self.campaign)
 
+    def parts_within_range(self, effects: Sequence[str]) -> list[HeldOutPart]:
+        """Held-out predictions, with a run beyond the range of all others held out in parts."""
+        return self.held_out_parts(effects, [b.run for b in self.beyond], alternate=True)
+
     def held_out_rms(self, effects: Sequence[str]) -> float:
         """Root mean square of the held-out prediction errors of a model with these effects, N.
 
         Runs are held out of the fit one at a time. A run whose speed or load is beyond the
         range of all others is held out in parts.
         """
-        parts = self.held_out_parts(effects, [b.run for b in self.beyond], alternate=True)
+        parts = self.parts_within_range(effects)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 

@@ -20,7 +20,6 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.review import MACHINE_TERMS, with_errors_of_motion
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.held_out import held_out_parts
 from jbf.estimation.samples import Samples
 from jbf.estimation.transients import check_film_rate, without_transients
 from jbf.estimation.uncertain_samples import initial_memory
@@ -199,7 +198,7 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
     if find_law(problem.law).has_bristle:
         samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
     every = [np.zeros(len(c)) for c in samples.counted]
-    for part in held_out_parts(problem, solution):
+    for part in candidates.parts_within_range(effects):
         for i, held_out, residual in zip(part.runs, part.masks, part.residuals, strict=True):
             every[i][held_out] = residual[held_out]
     white = every if samples.motion is None else samples.innovations(every, solution.noise)

@@ -132,9 +132,10 @@ class ExtrapolatedRun:
     run
         Index of the run in the campaign.
     quantity
-        `speed` (with its sign, so also the only run in one direction) or `load`.
+        `speed` (in one direction) or `load`.
     value, others
-        Extreme value of this run, and the nearest one of the other runs, in the unit of the record.
+        Extreme value of this run, and the nearest one of the other runs, in the unit of the record;
+        zero if no other run moves in this direction.
     """
 
     run: int
@@ -146,35 +147,38 @@ class ExtrapolatedRun:
 def extrapolated_runs(campaign: Campaign) -> list[ExtrapolatedRun]:
     """Runs with a speed or a load beyond the range of all others; speed is tested first."""
     by_run: dict[int, ExtrapolatedRun] = {}
-    for quantity, values in _quantities(campaign).items():
+    for quantity, values in _quantities(campaign):
         for extrapolated in _extrapolated(quantity, values, campaign.settings.held_out):
             by_run.setdefault(extrapolated.run, extrapolated)
     return [by_run[run] for run in sorted(by_run)]
 
 
-def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
-    """Speed and load at the included samples, by name, one array per run."""
+def _quantities(campaign: Campaign) -> list[tuple[str, list[Array]]]:
+    """Speed in either direction and load at the included samples, one array per run.
+
+    Speeds are positive; each array has the samples with motion in one direction.
+    """
     runs, counted = campaign.prepared, campaign.samples.counted
-    speeds = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
+    velocities = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
     loads = [recorded_load(p.rig, p.run) for p in runs]
     recorded = [load[c] for load, c in zip(loads, counted, strict=True) if load is not None]
-    return {"speed": speeds} | ({"load": recorded} if len(recorded) == len(runs) else {})
+    quantities = [("speed", [s * v[s * v > 0.0] for v in velocities]) for s in (1.0, -1.0)]
+    return [*quantities, ("load", recorded)] if len(recorded) == len(runs) else quantities
 
 
 def _extrapolated(
     quantity: str, values: list[Array], settings: HeldOutSettings
 ) -> list[ExtrapolatedRun]:
     """Runs with a sufficient share of samples beyond the range of a quantity in all other runs."""
-    top = max((float(np.max(np.abs(v), initial=0.0)) for v in values), default=0.0)
-    margin, extrapolated = settings.extrapolation_margin * top, []
+    factor, extrapolated = 1.0 + settings.extrapolation_margin, []
     for run, run_values in enumerate(values):
-        rest = [v for other, v in enumerate(values) if other != run and len(v)]
-        if not len(run_values) or not rest:
+        if not len(run_values) or len(values) < 2:
             continue
-        low, high = min(float(v.min()) for v in rest), max(float(v.max()) for v in rest)
+        rest = np.concatenate([v for other, v in enumerate(values) if other != run])
+        low, high = float(rest.min(initial=np.inf)), float(rest.max(initial=0.0))
         for outside, value, others in (
-            (run_values > high + margin, float(run_values.max()), high),
-            (run_values < low - margin, float(run_values.min()), low),
+            (run_values > factor * high, float(run_values.max()), high),
+            (run_values < low / factor, float(run_values.min()), low),
         ):
             if np.mean(outside) > settings.extrapolation_share:
                 extrapolated.append(ExtrapolatedRun(run, quantity, value, others))

@@ -274,7 +274,7 @@ class HeldOutSettings:
         "a hundred times the standard error",
     )
     extrapolation_margin: float = documented(
-        0.1, "share of the largest value within which nothing is extrapolated", "convention"
+        0.1, "relative difference from the other runs' range that is not extrapolated", "convention"
     )
     extrapolation_share: float = documented(
         0.05, "share of a run's samples that must be beyond all others", "more than single samples"

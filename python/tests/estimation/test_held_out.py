@@ -151,6 +151,24 @@ def test_faster_run_is_held_out_in_parts_and_its_extrapolation_reported_separate
     assert "extrapolation" in result.summary(full=True)
 
 
+def shuttle(speed: float, name: str, seed: int) -> Run:
+    """Strokes at constant speeds, 0.8 to 1.2 times `speed`; friction of a Stribeck curve."""
+    rng = np.random.default_rng(seed)
+    v = speed * np.repeat([0.8, -0.9, 1.0, -1.1, 1.2, -1.0, 0.9, -0.8], 80)
+    force = np.sign(v) * (5.0 + 4.0 * np.exp(-((v / 0.03) ** 2))) + 10.0 * v
+    noise = rng.normal(scale=0.05, size=len(v))
+    return Run.from_arrays(0.01 * np.arange(len(v)), v, force + noise, name=name)
+
+
+def test_stribeck_curve_with_one_speed_in_each_run_is_recognised() -> None:
+    """The friction of the slowest run does not follow from that of the faster ones."""
+    runs = [shuttle(v, f"run{k}", k) for k, v in enumerate((0.015, 0.03, 0.06, 0.12, 0.24))]
+    result = diagnose(Rig(), runs, law="coulomb")
+    assert result.effects == ("stribeck_excess",)
+    assert {e.run for e in result.steps[-1].extrapolations} == {"run0", "run4"}
+    assert result.steps[-1].held_out_rms < 0.055
+
+
 def test_runs_of_equal_range_have_no_extrapolation() -> None:
     runs = [staged(1.0, f"run{k}", k) for k in range(3)]
     result = diagnose(Rig(), runs, law="coulomb")

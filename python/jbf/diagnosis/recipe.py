@@ -44,11 +44,13 @@ from jbf.diagnosis.verdict import (
     verdict,
 )
 from jbf.diagnosis.which_law import (
+    SIMPLEST,
     LawTried,
     comparable,
     followed,
     laws_to_diagnose,
     simpler_law,
+    simplest_law_predicts_no_worse,
     which_law,
 )
 from jbf.errors import Stopped, Unfinished
@@ -188,16 +190,20 @@ def _diagnose(
             margin, (1.0 + policy.least_effect_share(with_motion_errors.motion_share)) ** 0.5
         )
     best: Diagnosis | None = None
-    for name in names:
-        if best is not None and not _may_predict_better(name, best, laws, margin):
+    queue = list(names)
+    while queue:
+        name = queue.pop(0)
+        # The simplest law is diagnosed after another one if it may replace that one.
+        simpler = best is not None and name == SIMPLEST
+        if not (best is None or simpler or _may_predict_better(name, best, laws, margin)):
             continue
         campaign = replace(recorded, work=recorded.work.part(1.0))
         try:
-            answer = _with_law(
+            answer, simplest_suffices = _with_law(
                 campaign, name, clock, limits, policy, progress, reached, given=law != AUTO
             )
         except Unfinished as stop:
-            if best is None and name == names[-1]:
+            if best is None and not queue:
                 raise
             no_law[f"law {name}"] = stop.reason
             continue
@@ -207,9 +213,11 @@ def _diagnose(
             raise Stopped(best.fit) from None
         if best is not None:
             before, after = held_out_errors((best, answer), recorded)
-            if after >= before / margin:
+            if after >= (before * margin if simpler else before / margin):
                 continue
         best = answer
+        if simplest_suffices and SIMPLEST not in names:
+            queue.insert(0, SIMPLEST)
     assert best is not None
     unfit = followed(recorded, clock)[1] if no_law else {}
     first = [t for t in laws if t.law == best.model.law]
@@ -267,8 +275,12 @@ def _with_law(
     reached: Reached,
     *,
     given: bool,
-) -> Diagnosis:
-    """Diagnose the runs with one law; if the user chose it (`given`), also find a simpler one."""
+) -> tuple[Diagnosis, bool]:
+    """Diagnose the runs with one law; if the user chose it (`given`), also find a simpler one.
+
+    The second result is whether the simplest law with the same effects predicts no worse; False if
+    the user chose the law.
+    """
     begun = time.monotonic()
     campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
@@ -330,6 +342,9 @@ def _with_law(
     simpler = None
     if given and (len(missing) > 1 or remains):
         simpler = optional.of(SIMPLER_LAWS, lambda: simpler_law(candidates, kept, clock), None)
+    simplest_suffices = False
+    if not given and set(kept) - set(machine):
+        simplest_suffices = simplest_law_predicts_no_worse(candidates, kept, clock)
     proposal: Experiment | str | None = None
     if answer == "adequate" and undetectable:
         proposal = optional.of(
@@ -340,7 +355,7 @@ def _with_law(
     if tied:
         rivals = [_rivals(named, name, others) for name, others in tied.items()]
         proposal = optional.of(NEXT_EXPERIMENT, lambda: propose(candidates, rivals, limits), None)
-    return Diagnosis(
+    diagnosis = Diagnosis(
         verdict=answer,
         effects=missing,
         machine=machine_of(candidates.campaign.rig, kept),
@@ -366,6 +381,7 @@ def _with_law(
         power=strengths,
         limitations=limitations(recorded, fit.params, policy),
     )
+    return diagnosis, simplest_suffices
 
 
 def _power(candidates: Candidates, present: Names) -> tuple[tuple[Power, ...], Names]:

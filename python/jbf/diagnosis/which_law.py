@@ -260,6 +260,31 @@ def compared(
     return [law_tried(i, float(rms[i]), bool(tied[i])) for i in order]
 
 
+def simplest_law_predicts_no_worse(
+    candidates: Candidates, effects: tuple[str, ...], clock: Clock
+) -> bool:
+    """Whether the simplest law with the same effects predicts held-out runs no worse.
+
+    A law with more parameters may have been selected because it partly described a missing effect.
+    False if this law is the simplest one, or the simplest one has no answer within its budget.
+    """
+    policy, campaign = candidates.policy, candidates.campaign
+    limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
+    simplest = Candidates(limited, SIMPLEST, clock, policy)
+    if candidates.law == SIMPLEST or not set(effects) <= set(simplest.names):
+        return False
+    entries = {}
+    try:
+        for each in (candidates, simplest):
+            count = len(each.fitted(effects).problem.open)
+            entries[each.law] = count, held_out_errors(each, effects)
+    except Unfinished:
+        campaign.work.check()
+        return False
+    tried = compared(entries, policy, policy.least_effect_share(campaign.motion_share))
+    return next(t.tied for t in tried if t.law == SIMPLEST)
+
+
 def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> LawTried | None:
     """Find a law that predicts no worse than a model with effects and has no more parameters.
 

@@ -93,8 +93,6 @@ class Candidates:
                 fitted.solution, fitted.state = solution, "ranked"
         return again
 
-    # ---- which effects ----------------------------------------------------------------------
-
     @cached_property
     def names(self) -> list[str]:
         """Names of the effects that are compatible with the law and testable in these runs."""
@@ -158,8 +156,6 @@ class Candidates:
                 if spreads_jumps(added) or has_unknown_start(added):
                     fitted.score = np.inf
         return fitted.score
-
-    # ---- the level of the tests -------------------------------------------------------------
 
     def independent_share(self, solution: Solution) -> float:
         """Effective number of independent samples of a solution divided by their number."""

@@ -11,8 +11,8 @@ from jbf.arrays import Names
 Outcome = Literal["added", "ties", "rejected", "negligible", "no gain", "confounder", "replaced"]
 
 CONFOUNDER = (
-    "not named: the runs disagree on it, more structure remains than it explains, or none of its "
-    "parameters is identifiable"
+    "not named: the runs disagree on it, more structure remains than it explains, it may correct "
+    "the formula of a larger effect, or none of its parameters is identifiable"
 )
 SEARCH = "search"
 """Axis of a remainder that reports a search ended by the budget or a time limit."""
@@ -35,7 +35,7 @@ class Trial:
     outcome
         `added`, `ties`, `rejected`, `negligible`, `no gain`, `confounder` or `replaced`.
         `negligible`: significant, but below the minimum effect size. `no gain`: not larger than
-        expected by chance. `confounder`: added, but the runs disagree on its parameters.
+        expected by chance. `confounder`: added, but it may imitate another mechanism.
         `replaced`: added, and later replaced by another effect.
     reason
         Reason for the outcome.

@@ -275,12 +275,6 @@ class Motion:
         "the motion have a larger share of the variance",
         "false effects explained less in most simulated servo drives (seeds 4938 to 5012)",
     )
-    min_noise_ratio: float = documented(
-        1.1,
-        "minimum ratio by which the noise, or the RMS of the residuals, must decrease "
-        "for these errors to be re-estimated",
-        "a tenth of the noise",
-    )
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from jbf.diagnosis.fit_state import MOTION, Reached
 from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
-from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.result import Diagnosis, held_out_rms_of_diagnoses
 from jbf.diagnosis.review import (
     machine_of,
     start_model,
@@ -40,6 +40,7 @@ from jbf.diagnosis.verdict import (
     best_predicting,
     confounders,
     effects_without_estimate,
+    form_corrections,
     limitations,
     verdict,
 )
@@ -56,7 +57,6 @@ from jbf.diagnosis.which_law import (
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
-from jbf.estimation.posterior_motions import aligned, delays_by_run_s
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock
@@ -212,7 +212,7 @@ def _diagnose(
                 raise
             raise Stopped(best.fit) from None
         if best is not None:
-            before, after = held_out_errors((best, answer), recorded)
+            before, after = held_out_rms_of_diagnoses((best, answer), recorded)
             if after >= (before * margin if simpler else before / margin):
                 continue
         best = answer
@@ -240,29 +240,6 @@ def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], mar
     first, last = best.steps[0], best.steps[-1]
     improved = last.held_out_rms / max(first.held_out_rms, 1e-300)
     return alone[law] < alone[best.model.law] * improved / margin
-
-
-def held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
-    """Held-out RMS of the final models of several diagnoses on common samples, unit of the force.
-
-    It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS. The
-    force of each run is corrected for the delay of each diagnosis.
-    """
-    runs = [p.run.name for p in recorded.prepared]
-    delays_s = [delays_by_run_s(runs, answer.fit.findings) for answer in answers]
-    margin_s = max(abs(delay_s) for of_runs_s in delays_s for delay_s in of_runs_s.tolist())
-    compared = [
-        compare_prepared(answer.model, aligned(recorded, of_runs_s, margin_s))
-        for answer, of_runs_s in zip(answers, delays_s, strict=True)
-    ]
-    samples = compared[0].samples
-    for comparison in compared:
-        samples = samples.within(comparison.samples.counted)
-    lasts = [answer.steps[-1] for answer in answers]
-    return [
-        samples.rms(comparison.residuals) * last.held_out_rms / max(last.rms, 1e-300)
-        for comparison, last in zip(compared, lasts, strict=True)
-    ]
 
 
 def _with_law(
@@ -298,7 +275,9 @@ def _with_law(
     with campaign.work.untimed():
         before = _before(candidates)
         remains = (*remainder_of(candidates, present), *of_selection)
-        doubted = confounders(candidates, present, remains) if remains else ()
+        doubted = form_corrections(candidates, present)
+        if remains:
+            doubted = (*doubted, *confounders(candidates, present, remains))
         machine = machine_of(candidates.campaign.rig, present)
         named = tuple(name for name in present if name not in doubted)
         if doubted and not remainder_of(candidates, named):

@@ -270,8 +270,8 @@ def _confounders_sentence(names: tuple[str, ...]) -> str:
     lone = len(names) == 1
     return (
         f" The model also contains {listed(names)}, which {'improves' if lone else 'improve'} the "
-        f"held-out prediction but {'is' if lone else 'are'} not named, because the runs disagree "
-        f"on {'its' if lone else 'their'} parameters."
+        f"held-out prediction but {'is' if lone else 'are'} not named, because "
+        f"{'it' if lone else 'they'} may imitate another mechanism."
     )
 
 

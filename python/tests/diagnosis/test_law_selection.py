@@ -10,7 +10,7 @@ from delayed_runs import NOISE_N, reversing_campaign
 from golden import golden, golden_campaign
 from jbf import Diagnosis, Drive, Rig, Run, diagnose
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.recipe import held_out_errors
+from jbf.diagnosis.result import held_out_rms_of_diagnoses
 from jbf.diagnosis.which_law import HeldOut, LawTried, compared, followed
 from jbf.estimation.campaign import Campaign
 
@@ -162,4 +162,41 @@ def test_diagnoses_are_compared_with_the_own_delay_of_each_run() -> None:
     """Without a correction, these delays increase the error thirtyfold."""
     campaign = reversing_campaign((0.0, 0.02, -0.012, 0.007))
     found = diagnose(Rig(), [p.run for p in campaign.prepared], law="coulomb")
-    assert held_out_errors([found, found], campaign) == [pytest.approx(NOISE_N, rel=0.05)] * 2
+    assert (
+        held_out_rms_of_diagnoses([found, found], campaign)
+        == [pytest.approx(NOISE_N, rel=0.05)] * 2
+    )
+
+
+def sweeping(force: Callable[[Array], Array], noise_rms: float) -> list[Run]:
+    """Three runs with speeds of up to 0.4, 0.8 and 1.5 m/s."""
+    runs, time = [], 0.02 * np.arange(800)
+    for k, top in enumerate((0.4, 0.8, 1.5)):
+        speed = top * (0.7 * np.sin(0.9 * time + k) + 0.3 * np.sin(2.3 * time))
+        noise = np.random.default_rng(k).normal(scale=noise_rms, size=len(time))
+        runs.append(Run.from_arrays(time, speed, force(speed) + noise, name=f"run{k}"))
+    return runs
+
+
+def test_simplest_law_is_selected_if_it_predicts_as_well_with_the_same_effects() -> None:
+    """Without the quadratic drag, a Stribeck curve fits better than a straight line."""
+
+    def force(v: Array) -> Array:
+        return np.asarray(0.25 * np.sign(v) + 0.1 * v + 0.7 * v * np.abs(v))
+
+    found = diagnose(Rig(), sweeping(force, 0.03), law="auto")
+    assert (found.model.law, found.effects) == ("coulomb", ("quadratic_drag",)), found.summary()
+    held_out = {law.law: law.held_out_rms for law in found.laws}
+    assert held_out["stribeck"] < held_out["coulomb"]
+
+
+def test_corrections_of_the_formula_of_a_larger_effect_are_not_named() -> None:
+    """Carreau's equation differs from the formula of `viscous_thinning` by a few per cent."""
+
+    def force(v: Array) -> Array:
+        return np.asarray(18.0 * np.sign(v) + 60.0 * v * (1.0 + (v / 0.25) ** 2) ** -0.35)
+
+    found = diagnose(Rig(), sweeping(force, 0.3), law="coulomb")
+    assert found.effects == ("viscous_thinning",), found.summary()
+    assert found.confounders
+    assert found.steps[-1].held_out_rms < 0.33

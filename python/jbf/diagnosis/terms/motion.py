@@ -29,8 +29,7 @@ def errors_of_motion(model: Model) -> Proposal | None:
     They may have been negligible, or the delay wrong, next to the error of a model with fewer
     effects. The gain is relative to the reference model with the present errors of the motion, and
     the threshold is reduced by those of effects that the model lacks. None for a rig without a
-    drive, if the errors are negligible, or if neither noise nor RMS decreases by the minimum ratio
-    of the policy.
+    drive, or if the errors are negligible.
     """
     campaign, reference = model.campaign, model.reference
     if campaign.rig.drive is None:
@@ -43,9 +42,6 @@ def errors_of_motion(model: Model) -> Proposal | None:
         return None
     # Either likelihood may be that of a recording without errors of the motion.
     old, new = before or _without_errors(reference), motion or _without_errors(after)
-    ratio = max(old.noise / new.noise, reference.rms / max(after.rms, 1e-150))
-    if before is not None and ratio < model.policy.motion.min_noise_ratio:
-        return None
     # If the delay changed, the samples of `again` differ from those of `campaign`.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
     weights_before, weights_after = _common_weights((campaign, reference), (again.campaign, after))

@@ -122,8 +122,6 @@ class Candidates:
             self._fitted[key] = Fitted(problem)
         return self._fitted[key]
 
-    # ---- score tests ------------------------------------------------------------------------
-
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
         """Gain that a score test predicts for a model with effects added to that of `near`.
 
@@ -337,35 +335,38 @@ class Candidates:
     def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
         """Compare the held-out errors of a model with and without one added effect.
 
-        The halves of a run are held out in turn, in both fits, if it alone determines a parameter,
-        or if its speed or load is beyond the range of all others.
+        A run that alone determines a parameter, or that is beyond the range of all others, is held
+        out in two parts, in both fits.
         """
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
-        indispensable = indispensable_runs(self.fitted(richer).problem, after)
-        halved = sorted(indispensable | {beyond.run for beyond in self.beyond})
-        held_out, richer_held_out = (self.held_out_parts(e, halved) for e in (present, richer))
-        names = tuple(self.campaign.samples.runs[i] for i in halved)
+        halved = indispensable_runs(self.fitted(richer).problem, after)
+        beyond = {run.run for run in self.beyond} - halved
+        held_out, richer_held_out = (
+            self.held_out_parts(effects, halved, beyond) for effects in (present, richer)
+        )
+        names = tuple(self.campaign.samples.runs[i] for i in sorted(halved | beyond))
         prepared = self.campaign.prepared
         return Confirmation.of(before, after, held_out, richer_held_out, names, prepared)
 
     def held_out_parts(
-        self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
+        self, effects: Sequence[str], halved: Collection[int] = (), alternate: Collection[int] = ()
     ) -> list[HeldOutPart]:
         """Held-out predictions of all runs, each from a fit to the other runs.
 
-        Two parts of each run in `halved` (indices) are held out in turn instead of the complete
-        run: its halves, or `alternate` sections.
+        Two parts of some runs (indices) are held out in turn instead of the complete run: the
+        halves of the runs `halved`, and alternate sections of the runs `alternate`.
         """
         solution, fitted = self.converge(effects), self.fitted(effects)
         if not fitted.held_out:
             fitted.held_out = held_out_parts(fitted.problem, solution)
-        parts = [p for part in fitted.held_out if (p := part.without(halved)).runs]
-        for run in halved:
-            if (run, alternate) not in fitted.halves:
-                predictions = held_out_halves(fitted.problem, solution, run, alternate=alternate)
-                fitted.halves[run, alternate] = predictions
-            parts += fitted.halves[run, alternate]
+        split = {**dict.fromkeys(halved, False), **dict.fromkeys(alternate, True)}
+        parts = [p for part in fitted.held_out if (p := part.without([*split])).runs]
+        for run, alternating in sorted(split.items()):
+            if (run, alternating) not in fitted.halves:
+                predictions = held_out_halves(fitted.problem, solution, run, alternate=alternating)
+                fitted.halves[run, alternating] = predictions
+            parts += fitted.halves[run, alternating]
         return parts
 
     @cached_property
@@ -373,17 +374,16 @@ class Candidates:
         """Runs whose speed or load is beyond the range of all others; empty for a single run."""
         return extrapolated_runs(self.campaign)
 
-    def parts_within_range(self, effects: Sequence[str]) -> list[HeldOutPart]:
-        """Held-out predictions, with a run beyond the range of all others held out in parts."""
-        return self.held_out_parts(effects, [b.run for b in self.beyond], alternate=True)
+    def held_out_within_range(self, effects: Sequence[str]) -> list[HeldOutPart]:
+        """Held-out predictions, from fits that cover the range of each run.
+
+        Alternate sections of a run are held out if it is beyond the range of all others.
+        """
+        return self.held_out_parts(effects, alternate=[b.run for b in self.beyond])
 
     def held_out_rms(self, effects: Sequence[str]) -> float:
-        """Root mean square of the held-out prediction errors of a model with these effects, N.
-
-        Runs are held out of the fit one at a time. A run whose speed or load is beyond the
-        range of all others is held out in parts.
-        """
-        parts = self.parts_within_range(effects)
+        """Root mean square of the errors of `held_out_within_range`, N."""
+        parts = self.held_out_within_range(effects)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 

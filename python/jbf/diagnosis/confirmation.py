@@ -34,7 +34,8 @@ class Confirmation:
         Gain in twice the held-out log predictive density, divided by the gain in twice the log
         likelihood of the fit.
     halved
-        Runs that alone determine a parameter; their halves were held out in turn, in both fits.
+        Runs of which two parts were held out in turn, in both fits: those that alone determine a
+        parameter, or that are beyond the range of all others.
     units
         Number of independent units: runs, or strokes if the number of runs is small.
     chance
@@ -123,7 +124,7 @@ class Confirmation:
 
     def describe(self, unit: str) -> str:
         """Describe the held-out RMS with the candidate, for the ledger."""
-        what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
+        what = "runs" if not self.halved else f"runs and parts of {_listed(self.halved)}"
         return f"RMS of held-out {what} {self.after_n:.4g} {unit}"
 
     def describe_gain(self, unit: str) -> str:

@@ -5,7 +5,6 @@ All values are in twice the log likelihood.
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
@@ -137,15 +136,14 @@ def evidence_on_common_samples(
     return min(gain, evidence(candidates, richer, refit, count_local_gain=count_local_gain))
 
 
-def evidence_with_less_smoothing(
-    candidates: Candidates, richer: Solution, simpler: Solution
-) -> float:
-    """Evidence for the richer of two models with a motion that is smoothed less.
+def is_due_to_smoothing(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
+    """Whether the gain of the richer model is below the threshold if the motion is smoothed less.
 
-    Infinite without errors of the motion. See `gain_with_less_smoothing`.
+    False if the likelihood does not contain errors of the motion. The gain is not reduced for
+    correlated innovations. See `gain_with_less_smoothing`.
     """
     if richer.samples.motion is None:
-        return math.inf
+        return False
     problems = [candidates.fitted(s.effects).problem for s in (richer, simpler)]
     gain = gain_with_less_smoothing(problems[0], richer, problems[1], simpler)
-    return gain - candidates.price(richer.free - simpler.free)
+    return gain <= candidates.price(richer.free - simpler.free)

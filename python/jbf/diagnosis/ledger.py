@@ -35,7 +35,7 @@ class Trial:
     outcome
         `added`, `ties`, `rejected`, `negligible`, `no gain`, `confounder` or `replaced`.
         `negligible`: significant, but below the minimum effect size. `no gain`: not larger than
-        expected by chance. `confounder`: added, but it may imitate another mechanism.
+        expected by chance. `confounder`: added, but it may describe another mechanism.
         `replaced`: added, and later replaced by another effect.
     reason
         Reason for the outcome.

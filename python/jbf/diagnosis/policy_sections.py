@@ -47,8 +47,8 @@ class Selection:
     )
     min_size_ratio: float = documented(
         0.1,
-        "RMS that an effect explains, relative to that of the largest residual structure, below "
-        "which it is not named",
+        "RMS that an effect explains, relative to that of the largest residual structure or of a "
+        "larger effect, below which it is not named",
         "an error of a tenth in the description of this structure",
     )
     confounder_ratio: float = documented(

@@ -17,6 +17,7 @@ from jbf.diagnosis.budget import (
     sufficient_time_s,
 )
 from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.compared_diagnoses import may_predict_better, replaces
 from jbf.diagnosis.experiment_design.excitations import Limits
 from jbf.diagnosis.experiment_design.next_run import (
     Experiment,
@@ -28,7 +29,7 @@ from jbf.diagnosis.fit_state import MOTION, Reached
 from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
-from jbf.diagnosis.result import Diagnosis, held_out_rms_of_diagnoses
+from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.review import (
     machine_of,
     start_model,
@@ -40,7 +41,7 @@ from jbf.diagnosis.verdict import (
     best_predicting,
     confounders,
     effects_without_estimate,
-    form_corrections,
+    formula_corrections,
     limitations,
     verdict,
 )
@@ -51,7 +52,7 @@ from jbf.diagnosis.which_law import (
     followed,
     laws_to_diagnose,
     simpler_law,
-    simplest_law_predicts_no_worse,
+    simplest_law_suffices,
     which_law,
 )
 from jbf.errors import Stopped, Unfinished
@@ -92,8 +93,8 @@ def diagnose(
         Recorded runs with friction; several different motions help to distinguish effects.
     law, clock
         Base law, and the definition of the time constant of its film (`journal` or `thesis`). The
-        law `auto` selects, among the laws that the rig allows, the one with the smallest held-out
-        error without effects. The default is `journal` for a bearing and `coulomb` for a drive.
+        law `auto` selects, among the laws that the rig allows, the simplest of those with the
+        smallest held-out errors. The default is `journal` for a bearing and `coulomb` for a drive.
     limits
         Limits of the rig for the next experiment; by default those of the runs.
     policy
@@ -190,12 +191,13 @@ def _diagnose(
             margin, (1.0 + policy.least_effect_share(with_motion_errors.motion_share)) ** 0.5
         )
     best: Diagnosis | None = None
-    queue = list(names)
+    queue, evaluated, diagnosed = list(names), {t.law for t in laws}, set[str]()
     while queue:
         name = queue.pop(0)
-        # The simplest law is diagnosed after another one if it may replace that one.
-        simpler = best is not None and name == SIMPLEST
-        if not (best is None or simpler or _may_predict_better(name, best, laws, margin)):
+        diagnosed.add(name)
+        # The simplest law follows another one only if it predicts as well with the same effects.
+        simplest = best is not None and name == SIMPLEST
+        if not (best is None or simplest or may_predict_better(name, best, laws, margin)):
             continue
         campaign = replace(recorded, work=recorded.work.part(1.0))
         try:
@@ -211,13 +213,10 @@ def _diagnose(
             if best is None:
                 raise
             raise Stopped(best.fit) from None
-        if best is not None:
-            before, after = held_out_rms_of_diagnoses((best, answer), recorded)
-            if after >= (before * margin if simpler else before / margin):
-                continue
-        best = answer
-        if simplest_suffices and SIMPLEST not in names:
-            queue.insert(0, SIMPLEST)
+        if best is None or replaces(answer, best, recorded, margin, simplest=simplest):
+            best = answer
+            if simplest_suffices and SIMPLEST in evaluated - diagnosed:
+                queue.insert(0, SIMPLEST)
     assert best is not None
     unfit = followed(recorded, clock)[1] if no_law else {}
     first = [t for t in laws if t.law == best.model.law]
@@ -228,18 +227,6 @@ def _diagnose(
         unfinished=(*(name for name in no_law if name not in unfit), *best.unfinished),
         elapsed_s=time.monotonic() - begun,
     )
-
-
-def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
-    """Whether a further law may predict better than the best diagnosed law with its effects.
-
-    `laws` has the held-out errors of all laws without effects. The held-out RMS of the further law
-    must be smaller by the factor `margin`.
-    """
-    alone = {t.law: t.held_out_rms for t in laws}
-    first, last = best.steps[0], best.steps[-1]
-    improved = last.held_out_rms / max(first.held_out_rms, 1e-300)
-    return alone[law] < alone[best.model.law] * improved / margin
 
 
 def _with_law(
@@ -255,8 +242,8 @@ def _with_law(
 ) -> tuple[Diagnosis, bool]:
     """Diagnose the runs with one law; if the user chose it (`given`), also find a simpler one.
 
-    The second result is whether the simplest law with the same effects predicts no worse; False if
-    the user chose the law.
+    Also returns whether the simplest law with the same effects predicts held-out runs as well;
+    False for a given law.
     """
     begun = time.monotonic()
     campaign = without_transients(recorded, law, clock)
@@ -275,13 +262,13 @@ def _with_law(
     with campaign.work.untimed():
         before = _before(candidates)
         remains = (*remainder_of(candidates, present), *of_selection)
-        doubted = form_corrections(candidates, present)
-        if remains:
-            doubted = (*doubted, *confounders(candidates, present, remains))
+        of_formulas = formula_corrections(candidates, present)
+        of_structure = confounders(candidates, present, remains) if remains else ()
+        doubted = tuple(dict.fromkeys((*of_formulas, *of_structure)))
         machine = machine_of(candidates.campaign.rig, present)
         named = tuple(name for name in present if name not in doubted)
         if doubted and not remainder_of(candidates, named):
-            # The model without the confounders has no residual structure: remove them.
+            # The model without these effects has no residual structure: remove them.
             present, remains = named, of_selection
         missing = tuple(name for name in named if name not in machine)
         kept = best_predicting(candidates, present, named)
@@ -323,7 +310,9 @@ def _with_law(
         simpler = optional.of(SIMPLER_LAWS, lambda: simpler_law(candidates, kept, clock), None)
     simplest_suffices = False
     if not given and set(kept) - set(machine):
-        simplest_suffices = simplest_law_predicts_no_worse(candidates, kept, clock)
+        simplest_suffices = optional.of(
+            SIMPLER_LAWS, lambda: simplest_law_suffices(candidates, kept, clock), False
+        )
     proposal: Experiment | str | None = None
     if answer == "adequate" and undetectable:
         proposal = optional.of(

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from jbf.comparison.comparison import Comparison, compare_prepared
+from jbf.comparison.comparison import Comparison
 from jbf.comparison.patterns import Failure
 from jbf.diagnosis.experiment_design.next_run import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
@@ -15,9 +14,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power
 from jbf.diagnosis.verdict import Verdict
 from jbf.diagnosis.which_law import LawTried
-from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit
-from jbf.estimation.posterior_motions import aligned, delays_by_run_s
 from jbf.models.model import Model
 from jbf.records.findings.finding import Finding
 from jbf.records.run import PathLike
@@ -81,7 +78,7 @@ class Diagnosis(Result):
         Recording artefacts by run, and their corrections.
     confounders
         Effects in the model that improve its held-out predictions but are not named, because they
-        may imitate another mechanism.
+        may describe another mechanism, or the error of another effect's formula.
     laws
         Laws that the rig allows, the selected one first, if the law was selected from the data.
     simpler_law
@@ -186,26 +183,3 @@ class Diagnosis(Result):
     def report(self, path: PathLike) -> None:
         """Write the result as an HTML report; equivalent to `save_html`."""
         self.save_html(path)
-
-
-def held_out_rms_of_diagnoses(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
-    """Held-out RMS of the final models of several diagnoses on common samples, unit of the force.
-
-    It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS. The
-    force of each run is corrected for the delay of each diagnosis.
-    """
-    runs = [p.run.name for p in recorded.prepared]
-    delays_s = [delays_by_run_s(runs, answer.fit.findings) for answer in answers]
-    margin_s = max(abs(delay_s) for of_runs_s in delays_s for delay_s in of_runs_s.tolist())
-    compared = [
-        compare_prepared(answer.model, aligned(recorded, of_runs_s, margin_s))
-        for answer, of_runs_s in zip(answers, delays_s, strict=True)
-    ]
-    samples = compared[0].samples
-    for comparison in compared:
-        samples = samples.within(comparison.samples.counted)
-    lasts = [answer.steps[-1] for answer in answers]
-    return [
-        samples.rms(comparison.residuals) * last.held_out_rms / max(last.rms, 1e-300)
-        for comparison, last in zip(compared, lasts, strict=True)
-    ]

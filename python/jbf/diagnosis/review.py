@@ -109,21 +109,21 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 
 
 def reconsider(
-    candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
+    candidates: Candidates, present: Names, refused: frozenset[str] = frozenset()
 ) -> Names:
     """Remove unnecessary effects, and replace an effect if another one has more evidence.
 
     The review is repeated until the model no longer changes, or an earlier one recurs, since a
-    replacement may make further effects unnecessary. Effects that held-out runs did not confirm in
-    this round (`unconfirmed`) are not used as replacements.
+    replacement may make further effects unnecessary. Effects that were refused in this round
+    (`Round.refused`) are not used as replacements.
     """
     seen = [present]
-    while (current := _reviewed_once(candidates, seen[-1], unconfirmed)) not in seen:
+    while (current := _reviewed_once(candidates, seen[-1], refused)) not in seen:
         seen.append(current)
     return current
 
 
-def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
+def _reviewed_once(candidates: Candidates, present: Names, refused: frozenset[str]) -> Names:
     """Review each effect once: keep, remove or replace it, and return the resulting effects."""
     current = present
     for name in present:
@@ -138,7 +138,7 @@ def _reviewed_once(candidates: Candidates, present: Names, unconfirmed: frozense
             continue
         if name in machine_of(candidates.campaign.rig, current) and name != OFFSET:
             continue  # not exchanged: if a spring is added, a superfluous weight is removed
-        others = [o for o in candidates.addable(rest) if o != name and o not in unconfirmed]
+        others = [o for o in candidates.addable(rest) if o != name and o not in refused]
         tie = candidates.policy.selection.tie
         costs = swap_costs(candidates, rest, others, full, simpler, max_loss=-tie, only_best=True)
         best = min(costs, key=costs.__getitem__, default=name)

@@ -13,7 +13,7 @@ from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_ga
 from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.residual_structure import find_residual_structure
 from jbf.diagnosis.review import reconsider, start_model, still_needed
-from jbf.diagnosis.selection import Follow, Round, try_candidates
+from jbf.diagnosis.selection import OF_SMOOTHING, Follow, Round, try_candidates
 from jbf.diagnosis.terms import best_term_update, re_estimated_motion
 from jbf.errors import Unfinished
 from jbf.estimation.held_out import errors_by_run
@@ -176,7 +176,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         # model. The selection does not return to a model that was tested already.
         if ended and frozenset(present) not in reviewed:
             reviewed.add(frozenset(present))
-            revised = reconsider(candidates, present, trial_round.unconfirmed)
+            revised = reconsider(candidates, present, trial_round.refused)
             if frozenset(revised) not in visited:
                 visited.add(frozenset(revised))
                 present, follow = revised, "promising"
@@ -194,7 +194,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
                     _effect_limit_reached(candidates, present, trial_round.leader),
                 )
             else:
-                remainders = _unconfirmed_candidate(candidates, present)
+                remainders = _unconfirmed_candidate(candidates, present, trial_round)
             return Selected(candidates, present, steps, remainders)
         visited.add(frozenset(extended))
         present, follow = extended, "promising"
@@ -320,23 +320,27 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
         if len(run_errors):
             size = f" {unit.speed}" if beyond.quantity == "speed" else ""
             own_range = f"{beyond.quantity} {beyond.value:.3g}{size}"
-            where = f"{own_range}, others to {beyond.others:.3g}{size}"
+            where = f"{own_range}, nearest other {beyond.others:.3g}{size}"
             rms = float(np.sqrt(np.mean(run_errors**2)))
             extrapolations.append(Extrapolation(names[beyond.run], rms, where))
     return tuple(extrapolations)
 
 
-def _unconfirmed_candidate(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
+def _unconfirmed_candidate(
+    candidates: Candidates, present: Names, trial_round: Round
+) -> tuple[Remainder, ...]:
     """Report an unaccepted candidate that fits better but does not predict held-out runs better.
 
     Samples next to friction jumps are excluded, since a run-specific clock error of less than a
     sample can affect them.
     """
     policy = candidates.policy
+    of_smoothing = {t.effect for t in trial_round.trials if t.reason == OF_SMOOTHING}
     fitted = {
         name: extension
         for name in candidates.names
         if name not in present
+        and name not in of_smoothing
         and (extension := candidates.fitted((*present, name))).solution is not None
     }
     base = candidates.converge(present)

@@ -19,8 +19,8 @@ from jbf.diagnosis.evidence import (
     effect_may_describe_motion_errors,
     evidence,
     evidence_on_common_samples,
-    evidence_with_less_smoothing,
     full_gain,
+    is_due_to_smoothing,
 )
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
@@ -35,7 +35,7 @@ LESS = 0.95
 CHANCE = "no significant gain"
 SLIGHT = "significant, but within the margin for recording artefacts"
 OF_MOTION_ERRORS = "explains no more than the errors of the acceleration could"
-OF_SMOOTHING = "the gain disappears if the motion is smoothed less"
+OF_SMOOTHING = "not significant with a motion that is smoothed less"
 SMOOTH = "fits better, but the residual is so strongly correlated that this may be chance"
 
 
@@ -71,13 +71,14 @@ class Round:
         The candidates tried, largest evidence first.
     leader
         The effect to add; None where none is accepted.
-    unconfirmed
-        Candidates with more evidence than the leader, but not confirmed by held-out runs.
+    refused
+        Candidates with evidence that held-out runs do not confirm, or that is due to the smoothing
+        of the motion. They do not replace other effects.
     """
 
     trials: tuple[Trial, ...]
     leader: str | None
-    unconfirmed: frozenset[str] = frozenset()
+    refused: frozenset[str] = frozenset()
 
 
 def try_candidates(candidates: Candidates, present: Names, follow: Follow = "promising") -> Round:
@@ -92,6 +93,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     ranked = _rank(candidates, present, base, follow)
     best, trials = 0.0, []
     unconfirmed: set[str] = set()
+    of_smoothing: set[str] = set()
     bare = base.rms
     least = min((r.solution.rms for r in ranked if r.evidence > 0), default=bare)
     # A wrong model has a smooth error, which resembles coloured noise. A candidate with a far
@@ -122,14 +124,13 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
                 "too little to tie with the leader"
             )
         elif gain > 0 and leader is None:
-            confirmation = candidates.confirmation(present, name)
-            richer = candidate.solution
-            alone = evidence_on_common_samples(candidates, richer, base)
+            alone = evidence_on_common_samples(candidates, candidate.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "the gain comes from the samples that it excludes"
-            elif (rough := evidence_with_less_smoothing(candidates, richer, base)) <= 0.0:
-                gain, reason = rough, OF_SMOOTHING
-            elif confirmation.confirms(gain, policy):
+            elif is_due_to_smoothing(candidates, candidate.solution, base):
+                outcome, reason = "rejected", OF_SMOOTHING
+                of_smoothing.add(name)
+            elif (confirmation := candidates.confirmation(present, name)).confirms(gain, policy):
                 if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)
                 leader, best = name, gain
@@ -152,19 +153,19 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         # The leader that these candidates were compared with was not accepted.
         return try_candidates(candidates, present, "shown")
     if leader is None:
-        tried = [r for r in ranked if r.effect not in unconfirmed]
+        tried = [r for r in ranked if r.effect not in unconfirmed | of_smoothing]
         leader = _by_units(candidates, present, tried)
     trials = [_added_by_units(candidates, present, t) if t.effect == leader else t for t in trials]
     ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
-    return Round(ordered, leader, frozenset(unconfirmed))
+    return Round(ordered, leader, frozenset(unconfirmed | of_smoothing))
 
 
 def _by_units(candidates: Candidates, present: Names, ranked: Sequence[Ranked]) -> str | None:
     """Select the candidate with the largest likelihood gain that independent units confirm.
 
     In a correlated residual few samples are independent, and a slow or constant effect has little
-    evidence. Runs or strokes (the units) are independent even then. None if no candidate is
-    confirmed.
+    evidence. Runs or strokes (the units) are independent even then. Errors due to the smoothing of
+    the motion may repeat in every unit. None if no candidate is confirmed.
     """
     base = candidates.converge(present)
     gains = {
@@ -176,7 +177,9 @@ def _by_units(candidates: Candidates, present: Names, ranked: Sequence[Ranked]) 
         if gains[name] <= 0.0:
             break
         if candidates.confirmation(present, name).units_confirm(candidates.level):
-            return name
+            richer = candidates.converge((*present, name))
+            if not is_due_to_smoothing(candidates, richer, base):
+                return name
     return None
 
 

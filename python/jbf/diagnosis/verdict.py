@@ -2,9 +2,9 @@
 
 `verdict` is a pure function of numbers. Each effect is judged by its own evidence. Other residual
 structure, such as bursts or tones, does not prevent an effect from being named, unless the evidence
-is weak and the structure is larger. A confounder imitates another mechanism, and its parameters
-differ between runs; or it corrects the formula of another effect, which is an approximation. It is
-not named, but it is kept in the model if it improves the predictions.
+is weak and the structure is larger. A confounder describes another mechanism, so that its
+parameters differ between runs, or the error of another effect's formula, which is an approximation.
+It is not named, but it is kept in the model if it improves the predictions.
 """
 
 from __future__ import annotations
@@ -29,8 +29,14 @@ from jbf.models.parameter_value import ParameterValue
 
 Verdict = Literal["adequate", "missing", "ambiguous", "unexplained"]
 
-SPEED_CURVE = frozenset({"stribeck_excess", "viscous_thinning", "quadratic_drag", "shear_thinning"})
+OF_SPEED = frozenset({"quadratic_drag", "shear_thinning", "stribeck_excess", "viscous_thinning"})
 """Effects that change the dependence of the friction on the magnitude of the speed only."""
+WITH_SPEED = OF_SPEED | {
+    "viscous_asymmetry",
+    "viscous_load_dependence",
+    "viscous_temperature_dependence",
+}
+"""Effects whose force depends on the speed, at least as one of its factors."""
 LEVEL, STIFFNESS = "F_c", "sigma_0"
 """Parameters of a bristle law; their ratio is the presliding displacement."""
 
@@ -79,14 +85,15 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
     return tuple(doubted)
 
 
-def form_corrections(candidates: Candidates, present: Names) -> Names:
-    """Find effects of the speed that may only correct the formula of a larger effect of the speed.
+def formula_corrections(candidates: Candidates, present: Names) -> Names:
+    """Find effects of the speed that may only correct the formula of a larger effect.
 
-    The formulas of the catalogue are approximations. An effect explains the error of another
-    formula if it decreases the mean square by less than the square of `min_size_ratio` times the
-    decrease by that effect.
+    The formulas of the catalogue are approximations, and their errors cannot be distinguished from
+    small effects. An effect of the speed is taken for a correction if it decreases the mean square
+    by less than the square of `min_size_ratio` times the decrease by the largest effect
+    `WITH_SPEED`.
     """
-    members = [name for name in present if name in SPEED_CURVE]
+    members = [name for name in present if name in WITH_SPEED]
     others = tuple(name for name in present if name not in members)
     if len(members) < 2:
         return ()
@@ -97,8 +104,12 @@ def form_corrections(candidates: Candidates, present: Names) -> Names:
 
     largest = min(members, key=mean_square)
     least = candidates.policy.selection.min_size_ratio**2 * (mean_square() - mean_square(largest))
-    small = (n for n in members if mean_square(largest) - mean_square(largest, n) < least)
-    return tuple(name for name in small if name != largest)
+    return tuple(
+        name
+        for name in members
+        if name in OF_SPEED and name != largest
+        if mean_square(largest) - mean_square(largest, name) < least
+    )
 
 
 def effects_without_estimate(

@@ -188,7 +188,7 @@ def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldO
 
 
 def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
-    """Prediction errors of each run by a model fitted to the other runs.
+    """Prediction errors of each run or section by a model fitted to the other ones.
 
     For a bristle law the errors include the samples of the initial-state transient: other laws
     predict these samples, and in an application the initial state is unknown.
@@ -198,7 +198,7 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
     if find_law(problem.law).has_bristle:
         samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
     every = [np.zeros(len(c)) for c in samples.counted]
-    for part in candidates.parts_within_range(effects):
+    for part in candidates.held_out_within_range(effects):
         for i, held_out, residual in zip(part.runs, part.masks, part.residuals, strict=True):
             every[i][held_out] = residual[held_out]
     white = every if samples.motion is None else samples.innovations(every, solution.noise)
@@ -260,26 +260,29 @@ def compared(
     return [law_tried(i, float(rms[i]), bool(tied[i])) for i in order]
 
 
-def simplest_law_predicts_no_worse(
-    candidates: Candidates, effects: tuple[str, ...], clock: Clock
-) -> bool:
-    """Whether the simplest law with the same effects predicts held-out runs no worse.
+def simplest_law_suffices(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> bool:
+    """Whether the simplest law with the same effects predicts held-out runs as well.
 
     A law with more parameters may have been selected because it partly described a missing effect.
-    False if this law is the simplest one, or the simplest one has no answer within its budget.
+    False if this law is the simplest one, or if the budget is too small for the comparison.
+
+    Raises
+    ------
+    Unfinished
+        The time limit is reached.
     """
     policy, campaign = candidates.policy, candidates.campaign
     limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
-    simplest = Candidates(limited, SIMPLEST, clock, policy)
+    simplest = Candidates(limited, SIMPLEST, clock, policy, candidates.progress)
     if candidates.law == SIMPLEST or not set(effects) <= set(simplest.names):
         return False
-    entries = {}
     try:
-        for each in (candidates, simplest):
-            count = len(each.fitted(effects).problem.open)
-            entries[each.law] = count, held_out_errors(each, effects)
+        entries = {
+            each.law: (len(find_law(each.law).parameters), held_out_errors(each, effects))
+            for each in (candidates, simplest)
+        }
     except Unfinished:
-        campaign.work.check()
+        campaign.work.check()  # the law exceeded its share; at the time limit, stop
         return False
     tried = compared(entries, policy, policy.least_effect_share(campaign.motion_share))
     return next(t.tied for t in tried if t.law == SIMPLEST)

@@ -79,7 +79,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     # Systematic errors are the changes of the parameters with less smoothing and, if their
     # likelihoods are similar, with the other clock and without located corners.
     solution = polish(best.problem, best.solution)
-    others = [with_less_smoothing(best.problem, solution)]
+    others = [with_less_smoothing(best.problem, solution)[1]]
     unclear = settings.motion.max_clock_deviance
     others += [
         polish(other.problem, other.solution)
@@ -92,8 +92,8 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     return best.problem, replace(solution, systematic=change)
 
 
-def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
-    """Return the solution of the problem with a motion that is smoothed less.
+def with_less_smoothing(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+    """Return the problem with a motion that is smoothed less, and its solution.
 
     The intensity of the process noise is multiplied by `roughness_factor`; weights, corners, jumps
     and the projection of a delay are kept. The change of a result measures its smoothing bias.
@@ -105,7 +105,7 @@ def with_less_smoothing(problem: Problem, solution: Solution) -> Solution:
     by_delay = None if before is None else before.by_delay
     motion = replace(estimate_motion_errors(problem, near), by_delay=by_delay)
     samples = replace(solution.samples, motion=motion)
-    return search_solution(
+    return problem, search_solution(
         problem, samples, solution.values, solution.noise, EVALUATIONS, lines=near.lines
     )
 
@@ -115,14 +115,15 @@ def gain_with_less_smoothing(
 ) -> float:
     """Gain of a fit over a simpler one, both refitted with a motion that is smoothed less.
 
-    It is in twice the log likelihood, with the errors of the motion estimated from the richer fit.
-    Errors due to the smoothing, which the covariance of the motion's errors does not contain, are
-    largest where the motion changes abruptly and resemble friction at low speed.
+    Gain in twice the log likelihood; both fits use the covariance estimated from the richer one.
+    The covariance does not contain the errors due to the smoothing. These are largest where the
+    motion changes abruptly, and resemble friction at low speed.
     """
-    richer = with_less_smoothing(problem, solution)
-    factor = problem.campaign.settings.motion.roughness_factor
-    rough = with_scaled_intensity(simpler_problem, factor, same_corners=True)
-    refitted = search_solution(rough, richer.samples, simpler.values, richer.noise, EVALUATIONS)
+    rough, richer = with_less_smoothing(problem, solution)
+    simpler_rough = simpler_problem.with_campaign(rough.campaign)
+    refitted = search_solution(
+        simpler_rough, richer.samples, simpler.values, richer.noise, EVALUATIONS
+    )
     return likelihood_gain(richer, refitted)
 
 
@@ -155,33 +156,33 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
     the friction divided by the mass. The force of a hand may jump instead. The motions with and
     without these jumps are both fitted. The likeliest of these fits and `end` is returned
-    (`likeliest`). Since corners and jumps depend on the parameters, they are located again with
-    those of the fit, as long as the likelihood increases. `first` is the problem before the
-    correction of a delay.
+    (`likeliest`). Corners and jumps depend on the parameters. They are located again with those of
+    each new fit, at most `ROUNDS` times, while twice the log likelihood increases by more than
+    `min_smoothness_gain`. `first` is the problem before the correction of a delay.
     """
     motion = end.solution.samples.motion
     settings = first.campaign.settings.motion
     if motion is None or motion.variance_share(end.solution.samples.weight) < settings.min_share:
         return end
 
-    def located(fit: DelayedFit, *, with_jumps: bool) -> DelayedFit:
+    def refit(fit: DelayedFit, *, with_jumps: bool) -> DelayedFit:
         """Fit with the corners located by the forces of `fit`, with or without jumps."""
-        moved = with_corners_located_by_forces(
+        located = with_corners_located_by_forces(
             fit.problem, fit.solution, fit.motion, with_jumps=with_jumps
         )
-        again = with_posteriors(first, posteriors(moved))
+        again = with_posteriors(first, posteriors(located))
         near = near_solution(again, fit.solution)
         return fit_with_delay(again, near, fit.delay_s, delayed=fit.delayed)
 
     at_once = fits_at_once(first.campaign, first.law, first.effects)
     without, jumping = in_parallel(
-        lambda jumps: located(end, with_jumps=jumps), (False, True), at_once
+        lambda jumps: refit(end, with_jumps=jumps), (False, True), at_once
     )
-    best = likeliest([end, without, jumping])
+    previous, best = end, likeliest([end, without, jumping])
     with_jumps, rounds = best is jumping, 1
-    while best.deviance < end.deviance - settings.min_smoothness_gain and rounds < ROUNDS:
-        end, rounds = best, rounds + 1
-        best = likeliest([end, located(end, with_jumps=with_jumps)])
+    while best.deviance < previous.deviance - settings.min_smoothness_gain and rounds < ROUNDS:
+        previous, rounds = best, rounds + 1
+        best = likeliest([previous, refit(previous, with_jumps=with_jumps)])
     return best
 
 

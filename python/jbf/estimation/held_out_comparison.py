@@ -14,7 +14,7 @@ this uncertainty (Geisser & Eddy 1979; Bjornstad 1990).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,18 +124,19 @@ def independent_units(
 class ExtrapolatedRun:
     """A run whose speed or load is beyond the range of all others.
 
-    The prediction of a fast run from slower ones is an extrapolation. The error of this prediction
-    depends more on the form of the law than on the fit, and is not used as a held-out error.
+    The prediction of such a run from the others is an extrapolation. Its error depends more on the
+    form of the law than on the fit, and is not used as a held-out error.
 
     Attributes
     ----------
     run
         Index of the run in the campaign.
     quantity
-        `speed` (in one direction) or `load`.
+        `speed` or `load`.
     value, others
-        Extreme value of this run, and the nearest one of the other runs, in the unit of the record;
-        zero if no other run moves in this direction.
+        Extreme value of this run, and the nearest one of the other runs, in the unit of the record.
+        A speed has the sign of its direction; directions are compared separately. `others` is zero
+        if no other run moves in this direction.
     """
 
     run: int
@@ -147,39 +148,37 @@ class ExtrapolatedRun:
 def extrapolated_runs(campaign: Campaign) -> list[ExtrapolatedRun]:
     """Runs with a speed or a load beyond the range of all others; speed is tested first."""
     by_run: dict[int, ExtrapolatedRun] = {}
-    for quantity, values in _quantities(campaign):
-        for extrapolated in _extrapolated(quantity, values, campaign.settings.held_out):
-            by_run.setdefault(extrapolated.run, extrapolated)
-    return [by_run[run] for run in sorted(by_run)]
-
-
-def _quantities(campaign: Campaign) -> list[tuple[str, list[Array]]]:
-    """Speed in either direction and load at the included samples, one array per run.
-
-    Speeds are positive; each array has the samples with motion in one direction.
-    """
     runs, counted = campaign.prepared, campaign.samples.counted
+    sizes = [int(np.count_nonzero(c)) for c in counted]
     velocities = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
     loads = [recorded_load(p.rig, p.run) for p in runs]
     recorded = [load[c] for load, c in zip(loads, counted, strict=True) if load is not None]
-    quantities = [("speed", [s * v[s * v > 0.0] for v in velocities]) for s in (1.0, -1.0)]
-    return [*quantities, ("load", recorded)] if len(recorded) == len(runs) else quantities
+    quantities = [("speed", sign, velocities) for sign in (1.0, -1.0)]
+    if len(recorded) == len(runs):
+        quantities.append(("load", 1.0, recorded))
+    for quantity, sign, values in quantities:
+        positive = [sign * v[sign * v > 0.0] for v in values]
+        for run, value, others in _beyond(positive, sizes, campaign.settings.held_out):
+            by_run.setdefault(run, ExtrapolatedRun(run, quantity, sign * value, sign * others))
+    return [by_run[run] for run in sorted(by_run)]
 
 
-def _extrapolated(
-    quantity: str, values: list[Array], settings: HeldOutSettings
-) -> list[ExtrapolatedRun]:
-    """Runs with a sufficient share of samples beyond the range of a quantity in all other runs."""
-    factor, extrapolated = 1.0 + settings.extrapolation_margin, []
-    for run, run_values in enumerate(values):
-        if not len(run_values) or len(values) < 2:
-            continue
-        rest = np.concatenate([v for other, v in enumerate(values) if other != run])
+def _beyond(
+    values: Sequence[Array], sizes: Sequence[int], settings: HeldOutSettings
+) -> Iterator[tuple[int, float, float]]:
+    """Generate the runs of which a sufficient share of samples is beyond all other runs.
+
+    `values` has positive values of each run, and `sizes` the number of all its samples. Generates
+    the index of the run, its extreme value, and the nearest value of the other runs or zero.
+    """
+    if len(values) < 2:
+        return
+    factor = 1.0 + settings.extrapolation_margin
+    for run, (own, size) in enumerate(zip(values, sizes, strict=True)):
+        rest = np.concatenate([*values[:run], *values[run + 1 :]])
         low, high = float(rest.min(initial=np.inf)), float(rest.max(initial=0.0))
-        for outside, value, others in (
-            (run_values > factor * high, float(run_values.max()), high),
-            (run_values < low / factor, float(run_values.min()), low),
-        ):
-            if np.mean(outside) > settings.extrapolation_share:
-                extrapolated.append(ExtrapolatedRun(run, quantity, value, others))
-    return extrapolated
+        most = settings.extrapolation_share * size
+        if np.count_nonzero(own > factor * high) > most:
+            yield run, float(own.max()), high
+        elif np.count_nonzero(own < low / factor) > most:
+            yield run, float(own.min()), low

@@ -274,7 +274,10 @@ class HeldOutSettings:
         "a hundred times the standard error",
     )
     extrapolation_margin: float = documented(
-        0.1, "relative difference from the other runs' range that is not extrapolated", "convention"
+        0.1,
+        "relative distance outside the range of the other runs up to which a run is not an "
+        "extrapolation",
+        "convention",
     )
     extrapolation_share: float = documented(
         0.05, "share of a run's samples that must be beyond all others", "more than single samples"
@@ -343,12 +346,14 @@ class MotionSettings:
     )
     min_smoothness_gain: float = documented(
         10.0,
-        "decrease of the deviance for which the smoothness of the motion is changed",
+        "decrease of the deviance for which the smoothness of the motion is changed, or its "
+        "corners are located again",
         "three standard deviations",
     )
     roughness_factor: float = documented(
         30.0,
-        "factor on the noise intensity; the change of the parameters is a systematic error",
+        "factor on the noise intensity; the change of the parameters is a systematic error, and an "
+        "effect must fit better with the smaller smoothing as well",
         "convention: about one and a half decades",
     )
 

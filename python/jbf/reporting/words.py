@@ -155,7 +155,9 @@ def drive_sentences(diagnosis: Diagnosis) -> str:
     """
     samples, sentences = diagnosis.after.samples, []
     share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
-    if share >= SHOWN_SHARE:
+    if samples.motion is not None and share >= SHOWN_SHARE:
+        if not diagnosis.residual_structure:  # the residual has no other part
+            share = max(share, 1.0 - (samples.motion.noise / diagnosis.steps[-1].rms) ** 2)
         percent = f"{100.0 * share:.0f} %"
         sentences.append(f"About {percent} of the mean square are errors of the estimated motion.")
     sentences += [
@@ -172,6 +174,8 @@ def law_sentence(diagnosis: Diagnosis) -> str:
         first, *other_laws = diagnosis.laws
         tied = [rival.law for rival in other_laws if rival.tied]
         words = f" Law selected from the data: {first.law}"
+        if tied and not first.tied:
+            return f"{words}, which predicts as well as {listed(tied, 'or')} with these effects."
         if tied:
             return f"{words}, the simplest of those that predict equally well ({listed(tied)} too)."
         return f"{words}."
@@ -271,7 +275,7 @@ def _confounders_sentence(names: tuple[str, ...]) -> str:
     return (
         f" The model also contains {listed(names)}, which {'improves' if lone else 'improve'} the "
         f"held-out prediction but {'is' if lone else 'are'} not named, because "
-        f"{'it' if lone else 'they'} may imitate another mechanism."
+        f"{'it' if lone else 'they'} may describe another mechanism or the error of a formula."
     )
 
 
@@ -304,8 +308,8 @@ def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
     """
     unit = diagnosis.model.rig.quantities.force
     return [
-        f"{e.run} exceeds the range of the other runs ({e.where}). A fit to the others predicts it "
-        f"with an RMS error of {number(e.rms)} {unit} (extrapolation). The held-out error uses "
+        f"{e.run} is outside the range of the other runs ({e.where}). A fit to the others predicts "
+        f"it with an RMS error of {number(e.rms)} {unit} (extrapolation). The held-out error uses "
         "alternate parts of this run"
         for e in diagnosis.steps[-1].extrapolations
     ]

@@ -9,8 +9,8 @@ from by_hand import Array
 from delayed_runs import NOISE_N, reversing_campaign
 from golden import golden, golden_campaign
 from jbf import Diagnosis, Drive, Rig, Run, diagnose
+from jbf.diagnosis.compared_diagnoses import held_out_rms_of_diagnoses
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.result import held_out_rms_of_diagnoses
 from jbf.diagnosis.which_law import HeldOut, LawTried, compared, followed
 from jbf.estimation.campaign import Campaign
 

@@ -85,7 +85,7 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         pytest.param(4816, "cogging", marks=EXTENDED),
         # The delay of the force appears only when the effect is in the model.
         pytest.param(4735, "stribeck_excess", marks=EXTENDED),
-        # Errors of the smoothing next to reversals resemble a Stribeck peak.
+        # Errors of the smoothing next to reversals resemble `stribeck_excess`.
         (5123, "viscous_thinning"),
         # With an offset, friction that differs by direction in full fits as well.
         pytest.param(4771, "viscous_asymmetry", marks=EXTENDED),
@@ -119,7 +119,7 @@ def test_fit_of_a_drive_finds_the_simulated_parameters_from_all_starting_values(
 
 
 def test_fit_with_the_hidden_effect_is_likelier_than_the_nested_fit_without_it() -> None:
-    """The jumps of the acceleration at reversals, first estimated with too small a friction."""
+    """Jumps of the acceleration are located again after the friction has increased."""
     rig, runs = recorded(5131, ("viscous_thinning",))
     nested = jbf.fit(rig, runs, ["inertia"], law="coulomb")
     fitted = jbf.fit(rig, runs, ["inertia", "viscous_thinning"], law="coulomb")

@@ -50,7 +50,7 @@ def find_residual_structure(
     @cache
     def refitted() -> list[Array]:
         """Residuals of the model refitted with a motion that is smoothed less."""
-        other = with_less_smoothing(problem, solution)
+        _, other = with_less_smoothing(problem, solution)
         return other.samples.without_deviations(other.residuals, other.noise)
 
     less_smoothed = None if samples.motion is None else refitted

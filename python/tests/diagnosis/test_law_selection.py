@@ -8,7 +8,8 @@ import pytest
 from by_hand import Array
 from delayed_runs import NOISE_N, reversing_campaign
 from golden import golden, golden_campaign
-from jbf import Diagnosis, Drive, Rig, Run, diagnose
+from jbf import Diagnosis, Drive, Rig, Run, TimeLimit, diagnose
+from jbf.diagnosis.budget import SIMPLER_LAWS
 from jbf.diagnosis.compared_diagnoses import held_out_rms_of_diagnoses
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.which_law import HeldOut, LawTried, compared, followed
@@ -178,16 +179,33 @@ def sweeping(force: Callable[[Array], Array], noise_rms: float) -> list[Run]:
     return runs
 
 
+def with_quadratic_drag(v: Array) -> Array:
+    """Coulomb and viscous friction with a quadratic drag.
+
+    Without the drag, a Stribeck curve fits better than a straight line.
+    """
+    return np.asarray(0.25 * np.sign(v) + 0.1 * v + 0.7 * v * np.abs(v))
+
+
 def test_simplest_law_is_selected_if_it_predicts_as_well_with_the_same_effects() -> None:
-    """Without the quadratic drag, a Stribeck curve fits better than a straight line."""
-
-    def force(v: Array) -> Array:
-        return np.asarray(0.25 * np.sign(v) + 0.1 * v + 0.7 * v * np.abs(v))
-
-    found = diagnose(Rig(), sweeping(force, 0.03), law="auto")
+    found = diagnose(Rig(), sweeping(with_quadratic_drag, 0.03), law="auto")
     assert (found.model.law, found.effects) == ("coulomb", ("quadratic_drag",)), found.summary()
     held_out = {law.law: law.held_out_rms for law in found.laws}
     assert held_out["stribeck"] < held_out["coulomb"]
+
+
+def test_limit_reached_while_the_simplest_law_is_compared_keeps_the_answer() -> None:
+    now_s = [0.0]
+
+    def progress(message: str, done: int, total: int) -> None:
+        if SIMPLER_LAWS in message:
+            now_s[0] = 2e3
+
+    limit = TimeLimit(1e3, lambda: now_s[0])
+    runs = sweeping(with_quadratic_drag, 0.03)
+    found = diagnose(Rig(), runs, law="auto", progress=progress, time_limit_s=limit)
+    assert (found.model.law, found.model.effects) == ("stribeck", ("quadratic_drag",))
+    assert SIMPLER_LAWS in found.unfinished
 
 
 def test_corrections_of_the_formula_of_a_larger_effect_are_not_named() -> None:
@@ -198,5 +216,6 @@ def test_corrections_of_the_formula_of_a_larger_effect_are_not_named() -> None:
 
     found = diagnose(Rig(), sweeping(force, 0.3), law="coulomb")
     assert found.effects == ("viscous_thinning",), found.summary()
-    assert found.confounders
+    assert "quadratic_drag" in found.confounders
+    assert len(set(found.confounders)) == len(found.confounders)
     assert found.steps[-1].held_out_rms < 0.33

@@ -10,8 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import Array
+from jbf import Rig, Run
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import HeldOutPart
-from jbf.estimation.held_out_comparison import mean_square, predictive_deviance
+from jbf.estimation.held_out_comparison import (
+    extrapolated_runs,
+    mean_square,
+    predictive_deviance,
+)
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT as SETTINGS
@@ -125,3 +131,32 @@ def test_mean_square_of_coloured_residuals_is_that_of_their_innovations() -> Non
     own = np.concatenate([noise.innovations(r, 0.1) for r in solution.residuals])
     square, count = mean_square(solution, solution.samples, noise)
     assert (square, count) == (pytest.approx(np.mean(own**2)), sum(COUNTS))
+
+
+@pytest.mark.parametrize(
+    ("shares", "beyond"),
+    [
+        pytest.param({}, [], id="equal ranges"),
+        pytest.param({0.3: 0.06}, [(0.3, 0.2)], id="faster"),
+        pytest.param({0.3: 0.04}, [], id="a few faster samples"),
+        pytest.param({-0.3: 0.06}, [(-0.3, 0.0)], id="other direction"),
+        pytest.param({-0.3: 0.01}, [], id="a few samples in the other direction"),
+        pytest.param({0.05: 0.06}, [(0.05, 0.1)], id="slower"),
+    ],
+)
+def test_run_is_extrapolated_if_some_of_its_samples_are_beyond_all_other_runs(
+    shares: dict[float, float], beyond: list[tuple[float, float]]
+) -> None:
+    """Three runs with speeds from 0.1 to 0.2 m/s, the last with other speeds as well."""
+    time, runs = 0.01 * np.arange(1000), []
+    for k in range(3):
+        speed = np.linspace(0.1, 0.2, 1000)
+        for other, share in shares.items() if k == 2 else ():
+            speed[: round(share * 1000)] = other
+        runs.append(Run.from_arrays(time, speed, 5.0 * np.sign(speed), name=f"run{k}"))
+    campaign = Campaign.prepare(Rig(), runs)
+    found = [
+        (campaign.samples.runs[e.run], e.quantity, round(e.value, 6), round(e.others, 6))
+        for e in extrapolated_runs(campaign)
+    ]
+    assert found == [("run2", "speed", *values) for values in beyond]

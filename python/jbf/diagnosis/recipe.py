@@ -29,6 +29,7 @@ from jbf.diagnosis.fit_state import MOTION, Reached
 from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
+from jbf.diagnosis.remainders import remainder_of
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.review import (
     machine_of,
@@ -36,7 +37,7 @@ from jbf.diagnosis.review import (
     weights,
     with_errors_of_motion,
 )
-from jbf.diagnosis.rounds import remainder_of, select, step
+from jbf.diagnosis.rounds import select, step
 from jbf.diagnosis.verdict import (
     best_predicting,
     confounders,

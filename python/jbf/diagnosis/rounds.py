@@ -9,20 +9,18 @@ import numpy as np
 
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
+from jbf.diagnosis.evidence import evidence, full_gain
 from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
-from jbf.diagnosis.residual_structure import find_residual_structure
+from jbf.diagnosis.remainders import remainder_of, remainders_of_selection
 from jbf.diagnosis.review import reconsider, start_model, still_needed
-from jbf.diagnosis.selection import OF_SMOOTHING, Follow, Round, try_candidates
-from jbf.diagnosis.terms import best_term_update, re_estimated_motion
+from jbf.diagnosis.selection import Follow, Round, try_candidates
+from jbf.diagnosis.terms import Update, best_term_update, re_estimated_motion
 from jbf.errors import Unfinished
 from jbf.estimation.held_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise_floor import noise_floor
-from jbf.estimation.samples import common_samples
 from jbf.estimation.transients import without_further_transients
 from jbf.models.catalogue import can_be_added
-from jbf.models.delayed_reading import DELAY
 
 
 @dataclass(frozen=True)
@@ -71,16 +69,17 @@ def select(candidates: Candidates) -> Selected:
         The first round exceeds the budget or the time limit. If a later one exceeds it, the
         selection ends with the last model whose candidates were tested.
     """
-    completed: list[Selected] = []
+    selection = _Selection(candidates)
     try:
-        return _select(candidates, completed)
+        return selection.run()
     except Unfinished as stop:
-        if not completed:
+        if not selection.completed:
             raise
-        work = completed[-1].candidates.campaign.work
+        last = selection.completed[-1]
+        work = last.candidates.campaign.work
         work.renew()
         with work.untimed():
-            return _ended_early(completed[-1], stop)
+            return _ended_early(last, stop)
 
 
 def _ended_early(last: Selected, stop: Unfinished) -> Selected:
@@ -105,100 +104,163 @@ def _ended_early(last: Selected, stop: Unfinished) -> Selected:
     return Selected(candidates, present, steps, (Remainder(SEARCH, where, 0.0),), not_tried)
 
 
-def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
-    """Select effects and terms, and append each tested and each extended model to `completed`.
+class _Selection:
+    """Stepwise selection: the present model, and the changes that lead to the next one.
 
-    Each pass of the loop tests the candidates of the present model once and ends in one of four
-    ways: with a changed observation model, with another set of effects to test, with more
-    candidates to fit (`follow`), or with the result. The models in `visited` were tested with the
-    present observation model; the selection does not return to them.
+    Attributes
+    ----------
+    candidates, present, steps
+        As in `Selected`.
+    completed
+        The tested and the extended models, the last one being the result if the time ends.
+    follow
+        Candidates to fit in the next round.
+    visited, reviewed
+        Models that were tested, or reviewed, with the present observation model. The selection does
+        not return to them.
+    updates
+        Number of changes of the observation model.
     """
-    policy = candidates.policy
-    present, steps = start_model(candidates), []
-    follow: Follow = "promising"
-    visited = {frozenset(present)}
-    reviewed: set[frozenset[str]] = set()
-    updates = 0
-    while True:
-        # Exclude samples at which this model shows a further initial-state transient.
-        settled = without_further_transients(
-            candidates.fitted(present).problem, candidates.converge(present)
-        )
+
+    def __init__(self, candidates: Candidates) -> None:
+        self.candidates, self.present = candidates, start_model(candidates)
+        self.steps: list[Step] = []
+        self.completed: list[Selected] = []
+        self.follow: Follow = "promising"
+        self.updates = 0
+        self._forget()
+
+    def _forget(self) -> None:
+        """Forget which models were tested with an earlier observation model."""
+        self.visited, self.reviewed = {frozenset(self.present)}, set[frozenset[str]]()
+
+    def run(self) -> Selected:
+        """Test the candidates of each model, and change it until no change is accepted.
+
+        A leading effect is added first. Without one, terms are added, then effects exchanged or
+        removed, then all candidates fitted, and finally pairs of effects added.
+        """
+        while True:
+            self._exclude_transients()
+            trial_round = self._test_candidates()
+            self.candidates.tell("reviewing the model", 0, 0)
+            changed = (
+                self._add_leader(trial_round)
+                or self._add_terms()
+                or self._exchange(trial_round)
+                or self._fit_all()
+                or self._add_pair(trial_round)
+            )
+            if not changed:
+                remainders = remainders_of_selection(self.candidates, self.present, trial_round)
+                return Selected(self.candidates, self.present, self.steps, remainders)
+
+    def _exclude_transients(self) -> None:
+        """Exclude samples at which this model shows a further initial-state transient."""
+        problem = self.candidates.fitted(self.present).problem
+        settled = without_further_transients(problem, self.candidates.converge(self.present))
         if settled is not None:
-            candidates = candidates.with_campaign(settled)
-            present = still_needed(candidates, present)
-            visited, reviewed = {frozenset(present)}, set()
+            self.candidates = self.candidates.with_campaign(settled)
+            self.present = still_needed(self.candidates, self.present)
+            self._forget()
+
+    def _test_candidates(self) -> Round:
+        """Test every candidate in addition to the present effects."""
+        candidates, present = self.candidates, self.present
         candidates.reached.candidates, candidates.reached.present = candidates, present
-        # Test every candidate in addition to the present effects.
-        trial_round = try_candidates(candidates, present, follow)
-        steps.append(step(candidates, present, trial_round.trials))
-        completed.append(Selected(candidates, present, list(steps)))
-        may_update = updates < policy.terms.max_updates
-        update, extended = None, present
-        candidates.tell("reviewing the model", 0, 0)
-        # Some terms of the observation model compete with the leading effect.
-        if trial_round.leader is not None:
-            least = _evidence_of_leader(candidates, present, trial_round)
-            update = best_term_update(candidates, present, least) if may_update else None
-            if update is None and len(present) < policy.selection.max_effects:
-                # The errors of the motion, estimated without the effect, contain its force.
-                leader = trial_round.leader
-                re_estimated = re_estimated_motion(candidates, (*present, leader))
-                if re_estimated is not None and leader in re_estimated.effects:
-                    candidates = candidates.with_campaign(*re_estimated)
-                    present = tuple(n for n in present if n in re_estimated.effects)
-                    visited, reviewed = {frozenset(present)}, set()
-                elif may_update:
-                    update = re_estimated  # the leader is `time_delay`: its delay is corrected
-                if update is None:
-                    extended = _with_leader(candidates, present, trial_round)
-        # If no effect is added, terms are added one by one, the largest evidence first. A term
-        # that competes with the leader is added alone.
-        ended = update is None and frozenset(extended) in visited
-        if ended and follow == "promising" and may_update:
-            update = best_term_update(candidates, present)
+        trial_round = try_candidates(candidates, present, self.follow)
+        self.steps.append(step(candidates, present, trial_round.trials))
+        self.completed.append(Selected(candidates, present, list(self.steps)))
+        return trial_round
+
+    @property
+    def _may_update(self) -> bool:
+        """Whether the observation model may still be changed."""
+        return self.updates < self.candidates.policy.terms.max_updates
+
+    def _add_leader(self, trial_round: Round) -> bool:
+        """Add the leading effect, or a term of the observation model that has more evidence."""
+        leader, candidates = trial_round.leader, self.candidates
+        if leader is None:
+            return False
+        least = _evidence_of_leader(candidates, self.present, trial_round)
+        update = best_term_update(candidates, self.present, least) if self._may_update else None
+        if update is None and len(self.present) >= candidates.policy.selection.max_effects:
+            return False
+        if update is None:
+            # The errors of the motion, estimated without the effect, contain its force.
+            re_estimated = re_estimated_motion(candidates, (*self.present, leader))
+            if re_estimated is not None and leader in re_estimated.effects:
+                self.candidates = candidates.with_campaign(*re_estimated)
+                self.present = tuple(n for n in self.present if n in re_estimated.effects)
+                self._forget()
+            elif self._may_update:
+                update = re_estimated  # the leader is `time_delay`: its delay is corrected
         if update is not None:
-            before = present
-            while update is not None:
-                updates += 1
-                candidates = candidates.with_campaign(*update)
-                kept = [n for n in present if n in update.effects]
-                added = [n for n in update.effects if n not in present]
-                present = still_needed(candidates, (*kept, *added))
-                more = ended and updates < policy.terms.max_updates
-                update = best_term_update(candidates, present) if more else None
-            visited, reviewed, follow = {frozenset(present)}, set(), "promising"
-            # Without a further effect, the next step replaces this one.
-            if set(present) <= set(before):
-                steps.pop()
-            continue
-        # If neither an effect nor a term is added, effects may be exchanged or removed, once per
-        # model. The selection does not return to a model that was tested already.
-        if ended and frozenset(present) not in reviewed:
-            reviewed.add(frozenset(present))
-            revised = reconsider(candidates, present, trial_round.refused)
-            if frozenset(revised) not in visited:
-                visited.add(frozenset(revised))
-                present, follow = revised, "promising"
-                continue
-        # With residual structure, candidates with a small score are fitted, then pairs of them.
-        if ended and follow == "promising" and remainder_of(candidates, present):
-            follow = "all"
-            steps.pop()
-            continue
-        if ended and follow == "all":
-            extended = _pair(candidates, present, trial_round)
-        if frozenset(extended) in visited:
-            if trial_round.leader is not None and len(present) >= policy.selection.max_effects:
-                remainders: tuple[Remainder, ...] = (
-                    _effect_limit_reached(candidates, present, trial_round.leader),
-                )
-            else:
-                remainders = _unconfirmed_candidate(candidates, present, trial_round)
-            return Selected(candidates, present, steps, remainders)
-        visited.add(frozenset(extended))
-        present, follow = extended, "promising"
-        completed.append(Selected(candidates, present, list(steps)))
+            self._update_terms(update, add_more=False)
+            return True
+        return self._extend(_with_leader(self.candidates, self.present, trial_round))
+
+    def _add_terms(self) -> bool:
+        """Add terms of the observation model one by one, the largest evidence first."""
+        if self.follow != "promising" or not self._may_update:
+            return False
+        update = best_term_update(self.candidates, self.present)
+        if update is not None:
+            self._update_terms(update, add_more=True)
+        return update is not None
+
+    def _update_terms(self, update: Update | None, *, add_more: bool) -> None:
+        """Change the observation model; with `add_more`, until no further term is accepted."""
+        before = self.present
+        while update is not None:
+            self.updates += 1
+            self.candidates = self.candidates.with_campaign(*update)
+            kept = [n for n in self.present if n in update.effects]
+            added = [n for n in update.effects if n not in self.present]
+            self.present = still_needed(self.candidates, (*kept, *added))
+            more = add_more and self._may_update
+            update = best_term_update(self.candidates, self.present) if more else None
+        self.follow = "promising"
+        self._forget()
+        # Without a further effect, the next step replaces this one.
+        if set(self.present) <= set(before):
+            self.steps.pop()
+
+    def _exchange(self, trial_round: Round) -> bool:
+        """Exchange or remove effects, once for each model."""
+        if frozenset(self.present) in self.reviewed:
+            return False
+        self.reviewed.add(frozenset(self.present))
+        revised = reconsider(self.candidates, self.present, trial_round.refused)
+        if frozenset(revised) in self.visited:
+            return False
+        self.visited.add(frozenset(revised))
+        self.present, self.follow = revised, "promising"
+        return True
+
+    def _fit_all(self) -> bool:
+        """Fit candidates with a small score as well, if the residual has structure."""
+        if self.follow != "promising" or not remainder_of(self.candidates, self.present):
+            return False
+        self.follow = "all"
+        self.steps.pop()
+        return True
+
+    def _add_pair(self, trial_round: Round) -> bool:
+        """Add two effects that have evidence only together."""
+        if self.follow != "all":
+            return False
+        return self._extend(_pair(self.candidates, self.present, trial_round))
+
+    def _extend(self, extended: Names) -> bool:
+        """Continue with an extended model, unless it was tested already."""
+        if frozenset(extended) in self.visited:
+            return False
+        self.visited.add(frozenset(extended))
+        self.present, self.follow = extended, "promising"
+        self.completed.append(Selected(self.candidates, extended, list(self.steps)))
+        return True
 
 
 def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Round) -> float:
@@ -208,12 +270,6 @@ def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Rou
         return leader.evidence
     richer = candidates.converge((*present, leader.effect))
     return max(full_gain(candidates, richer, candidates.converge(present)), 0.0)
-
-
-def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """Residual structure of the model with the present effects."""
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    return find_residual_structure(problem, solution, candidates.policy)
 
 
 def _with_leader(candidates: Candidates, present: Names, trial_round: Round) -> Names:
@@ -288,17 +344,6 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
     return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.search.paired]
 
 
-def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -> Remainder:
-    """Report that the largest number of effects is reached although `leader` would be added."""
-    base, richer = candidates.converge(present), candidates.converge((*present, leader))
-    unit = candidates.campaign.rig.quantities.force
-    where = (
-        f"effect limit ({len(present)}) reached; {leader} would reduce the RMS from "
-        f"{base.rms:.3g} to {richer.rms:.3g} {unit}"
-    )
-    return Remainder("effects", where, max(1.0 - (richer.rms / base.rms) ** 2, 0.0))
-
-
 def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
     """Create the step of the ledger for a model: its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
@@ -324,48 +369,3 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
             rms = float(np.sqrt(np.mean(run_errors**2)))
             extrapolations.append(Extrapolation(names[beyond.run], rms, where))
     return tuple(extrapolations)
-
-
-def _unconfirmed_candidate(
-    candidates: Candidates, present: Names, trial_round: Round
-) -> tuple[Remainder, ...]:
-    """Report an unaccepted candidate that fits better but does not predict held-out runs better.
-
-    Samples next to friction jumps are excluded, since a run-specific clock error of less than a
-    sample can affect them.
-    """
-    policy = candidates.policy
-    of_smoothing = {t.effect for t in trial_round.trials if t.reason == OF_SMOOTHING}
-    fitted = {
-        name: extension
-        for name in candidates.names
-        if name not in present
-        and name not in of_smoothing
-        and (extension := candidates.fitted((*present, name))).solution is not None
-    }
-    base = candidates.converge(present)
-    # Exclude the samples next to jumps, as in the fit of a delay.
-    delay = fitted.get(DELAY)
-    away = base.samples if delay is None else delay.current_solution().samples
-    refused = []
-    for name, problem in fitted.items():
-        richer = problem.current_solution()
-        samples = common_samples(richer.samples, away)
-        with_it, without = (replace(s, samples=samples) for s in (richer, base))
-        better = with_it.rms < policy.selection.max_refused_rms_ratio * without.rms
-        gains = (
-            evidence_on_common_samples(candidates, with_it, without, count_local_gain=True)
-            > policy.selection.weak_evidence
-        )
-        if better and gains:
-            refused.append((richer.rms, name))
-    if not refused:
-        return ()
-    rms, name = min(refused)
-    share = max(1.0 - (rms / base.rms) ** 2, 0.0)
-    if share < policy.least_share(candidates.campaign.motion_share):
-        return ()
-    unit = candidates.campaign.rig.quantities.force
-    fits = f"{name} reduces the RMS from {base.rms:.3g} to {rms:.3g} {unit}"
-    where = f"{fits}, but does not improve the held-out prediction"
-    return (Remainder("run", where, share),)

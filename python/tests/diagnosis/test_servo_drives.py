@@ -54,6 +54,7 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
         pytest.param(4828, {"inertia"}, id="steps, 97 Hz, position alone"),
         pytest.param(4851, {"inertia"}, id="point to point, force late by 0.71 samples"),
         pytest.param(4860, {"inertia", "gravity"}, id="exponential starts, smoothing bias"),
+        pytest.param(5143, {"inertia", "gravity"}, id="steps, smoothing bias in every stroke"),
         pytest.param(
             4936, {"inertia", "gravity"}, id="soft controller, abrupt reversals", marks=EXTENDED
         ),
@@ -85,8 +86,6 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         pytest.param(4816, "cogging", marks=EXTENDED),
         # The delay of the force appears only when the effect is in the model.
         pytest.param(4735, "stribeck_excess", marks=EXTENDED),
-        # Errors of the smoothing next to reversals resemble `stribeck_excess`.
-        (5123, "viscous_thinning"),
         # With an offset, friction that differs by direction in full fits as well.
         pytest.param(4771, "viscous_asymmetry", marks=EXTENDED),
     ],

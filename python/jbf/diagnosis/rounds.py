@@ -9,7 +9,7 @@ import numpy as np
 
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, full_gain
+from jbf.diagnosis.evidence import evidence, full_gain, is_due_to_smoothing
 from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.remainders import remainder_of, remainders_of_selection
 from jbf.diagnosis.review import reconsider, start_model, still_needed
@@ -332,6 +332,8 @@ def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
         return present
     if evidence(candidates, richer, base) <= 0.0 and full_gain(candidates, richer, base) <= 0.0:
         return present
+    if is_due_to_smoothing(candidates, richer, base):
+        return present
     return still_needed(candidates, best)
 
 
@@ -365,7 +367,10 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
         if len(run_errors):
             size = f" {unit.speed}" if beyond.quantity == "speed" else ""
             own_range = f"{beyond.quantity} {beyond.value:.3g}{size}"
-            where = f"{own_range}, nearest other {beyond.others:.3g}{size}"
+            others = f"nearest other {beyond.others:.3g}{size}"
+            if beyond.others == 0.0:
+                others = "no other run moves in this direction"
+            where = f"{own_range}, {others}"
             rms = float(np.sqrt(np.mean(run_errors**2)))
             extrapolations.append(Extrapolation(names[beyond.run], rms, where))
     return tuple(extrapolations)

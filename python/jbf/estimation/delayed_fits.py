@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
-from itertools import pairwise
+from functools import cached_property
 from operator import attrgetter
 
 import numpy as np
-from scipy import optimize
 
 from jbf.arrays import Array
 from jbf.estimation.delays import delay_slope
@@ -36,8 +34,10 @@ EVALUATIONS = 20
 """Evaluations of each fit."""
 DELAY_STEP = 0.02
 """Tolerance of a delay of the force, in sampling intervals."""
-MAX_BRACKETS = 4
-"""Number of intervals, each half a sampling interval, in which a sign change is sought."""
+SETTLED_DELAY = 0.2
+"""Tolerance of a delay of the force, in standard errors, if this is larger."""
+FARTHEST = 2.0
+"""Largest difference of a delay from the start of its search, in sampling intervals."""
 DELAY_SPAN = 0.1
 """Half-width of the central difference of the sum of squares with respect to the delay. It is in
 sampling intervals."""
@@ -216,7 +216,7 @@ def _fits_at_same_readings(
 
     A few more readings are dropped at each end, for a search from the result.
     """
-    beyond_s = (0.5 * MAX_BRACKETS + 1.0) * _shortest_step_s(first)
+    beyond_s = (FARTHEST + 1.0) * _shortest_step_s(first)
     margin_s = float(np.max(np.abs(delays_s))) + beyond_s
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
     fits = in_parallel(
@@ -240,37 +240,27 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     is less accurate: the covariance, and with it the likelihood, is discontinuous where a sample
     crosses a corner of the motion.
 
-    The search begins at the delay of the fit `start`. The standard error is infinite if the
-    derivative has no root within two sampling intervals from it.
+    Newton's method starts at the delay of the fit `start`, and estimates the covariance again after
+    each step. The standard error is infinite if it does not converge within two sampling intervals.
     """
     step_s = _shortest_step_s(start.first)
     span_s = DELAY_SPAN * step_s
-    references = {start.delay_s: start}
-
-    def squares(delay_s: float, offsets: Sequence[float]) -> Array:
-        """Sums of squares, relative to the noise variance, at offsets in units of `span_s`."""
-        if delay_s not in references:
-            references[delay_s] = fit_with_delay(start.first, start.solution, delay_s, rounds=1)
-        return _squares(references[delay_s], delay_s + span_s * np.array(offsets))
-
-    @cache
-    def slope(delay_s: float) -> float:
-        """Central difference of the sum of squares."""
-        before, after = squares(delay_s, [-1.0, 1.0])
-        return float(after - before)
-
-    downhill_s = (0.5 if slope(start.delay_s) < 0.0 else -0.5) * step_s
-    ends_s = [start.delay_s + k * downhill_s for k in range(MAX_BRACKETS + 1)]
-    bracket = next(
-        (ends for ends in pairwise(ends_s) if slope(ends[0]) * slope(ends[1]) <= 0.0), None
-    )
-    if bracket is None:
-        return start.delay_s, np.inf
-    delay_s = float(optimize.brentq(slope, *bracket, xtol=DELAY_STEP * step_s))
-    before, at, after = squares(delay_s, [-1.0, 0.0, 1.0])
-    # The sum of squares rises by one at one standard error.
-    curvature = 0.5 * (before + after) - at
-    return delay_s, span_s / curvature**0.5 if curvature > 0.0 else np.inf
+    delay_s, reference = start.delay_s, start
+    for _ in range(ROUNDS):
+        before, at, after = _squares(reference, delay_s + span_s * np.array([-1.0, 0.0, 1.0]))
+        # The sum of squares rises by one at one standard error.
+        curvature = 0.5 * (before + after) - at
+        if curvature <= 0.0:
+            break
+        sd_s = span_s / curvature**0.5
+        change_s = 0.25 * (before - after) / curvature * span_s
+        delay_s += float(np.clip(change_s, -0.5 * step_s, 0.5 * step_s))
+        if abs(delay_s - start.delay_s) > FARTHEST * step_s:
+            break
+        if abs(change_s) < max(DELAY_STEP * step_s, SETTLED_DELAY * sd_s):
+            return delay_s, sd_s
+        reference = fit_with_delay(start.first, start.solution, delay_s, rounds=1)
+    return start.delay_s, np.inf
 
 
 def _squares(reference: DelayedFit, delays_s: Array) -> Array:

@@ -63,7 +63,7 @@ def test_interrupted_fit_returns_the_best_parameters_so_far() -> None:
     complete = fit()
     total, rms = module["calls"], []
     # The search begins before the first of these evaluations and ends after the second.
-    for at in (total // 64, total // 2):
+    for at in (total // 48, total // 2):
         register(at)
         with pytest.raises(Stopped) as stopped:
             fit()

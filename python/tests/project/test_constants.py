@@ -47,7 +47,7 @@ NUMERICAL = {
         diagnosis.terms.shifts: SETTLED
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
-        estimation.delayed_fits: SETTLED DELAY_STEP
+        estimation.delayed_fits: SETTLED DELAY_STEP SETTLED_DELAY
         estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
@@ -102,7 +102,7 @@ NUMERICAL = {
     "range of a search, wider than any plausible result": """
         diagnosis.power.detection_limits: EXPONENTS
         estimation.delay_scan: REACH LEAST_REACH_STEPS
-        estimation.delayed_fits: MAX_BRACKETS
+        estimation.delayed_fits: FARTHEST
         estimation.generalised_least_squares: LEAST_INTENSITY
         estimation.posterior_motions: LEAST_NOISE MOST_NOISE MOST_SCALE RATIOS
         estimation.quantisation: MOST_NOISE

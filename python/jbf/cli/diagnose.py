@@ -68,7 +68,7 @@ def add(commands: Commands) -> None:
     also = (
         f", or {AUTO}: the law that predicts held-out runs best (default: journal for a bearing, "
     )
-    add_law(parser, also=f"{also}{AUTO} for a drive)")
+    add_law(parser, also=f"{also}otherwise {AUTO})")
     add_effects_from(parser)
     hold_out.add(parser)
     level.add(parser)

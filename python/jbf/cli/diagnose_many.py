@@ -63,7 +63,7 @@ def run(options: DiagnoseOptions, folder: str) -> int:
             campaigns,
             executor=executor,
             progress=report,
-            law=options.law.law or "journal",
+            law=options.law.law,
             clock=options.law.clock,
             limits=options.limits.limits(options.next_duration_s),
             policy=options.level.policy(),

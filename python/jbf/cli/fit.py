@@ -63,7 +63,7 @@ def add(commands: Commands) -> None:
         default="",
         help="effects to fit in addition to the law (jbf effects lists them)",
     )
-    add_law(parser, also="; default: journal for a bearing, coulomb for a drive")
+    add_law(parser, also="; default: journal for a bearing, otherwise coulomb")
     parser.add_argument(
         "--fix",
         metavar="NAME=VALUE",

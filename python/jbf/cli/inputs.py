@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli.progress import shown
 from jbf.errors import InputError
-from jbf.models.chain import check_rig, default_law
+from jbf.models.chain import check_rig, default_law, default_law_of_diagnosis
 from jbf.models.model import Model
 from jbf.models.vocabulary import AUTO
 from jbf.records.csv_file import read_run
@@ -27,15 +27,12 @@ _imports: list[Import] = []
 
 
 def law_for(on: Rig, requested: str | None) -> str:
-    """Law to use: the requested one, otherwise the default for the rig.
-
-    The default is `journal` for a bearing; for a drive the law is selected from the data.
-    """
-    return requested or ("journal" if on.drive is None else AUTO)
+    """Law of a diagnosis: the requested one, otherwise the default for the rig."""
+    return requested or default_law_of_diagnosis(on)
 
 
 def law_of_fit(on: Rig, requested: str | None) -> str:
-    """Law to fit: the requested one, otherwise `journal` for a bearing, `coulomb` for a drive."""
+    """Law of a fit: the requested one, otherwise the default for the rig."""
     return requested or default_law(on)
 
 

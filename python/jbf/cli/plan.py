@@ -72,7 +72,7 @@ def add(commands: Commands) -> None:
     add_earlier_name(parser, "--out", "--folder")
     level.add(parser)
     add_json(parser)
-    add_law(parser, also="; default: journal for a bearing, coulomb for a drive")
+    add_law(parser, also="; default: journal for a bearing, otherwise coulomb")
     add_effects_from(parser)
 
 

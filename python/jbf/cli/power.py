@@ -49,7 +49,7 @@ def add(commands: Commands) -> None:
     add_noise(parser)
     level.add(parser)
     add_json(parser)
-    add_law(parser, also="; default: journal for a bearing, coulomb for a drive")
+    add_law(parser, also="; default: journal for a bearing, otherwise coulomb")
     add_effects_from(parser)
 
 

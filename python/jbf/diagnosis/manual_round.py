@@ -61,7 +61,7 @@ def manual_round(
 ) -> ManualRound:
     """Fit a law with the given effects, and test each other effect in addition to them.
 
-    `law` is by default `journal` for a bearing and `coulomb` for a drive. `clock` and `progress`
+    `law` is by default `journal` for a bearing, otherwise `coulomb`. `clock` and `progress`
     are those of `diagnose`. `fitted_as` is called with the fit and its comparison before any
     candidate is tried.
 

@@ -70,8 +70,8 @@ def diagnose_many(
     """
     for option in options:
         one_of(option, OPTIONS, "option")
-    if options.get("law") != AUTO:
-        find_law(options.get("law", "journal"))
+    if options.get("law") not in (None, AUTO):
+        find_law(options["law"])
     find_clock(options.get("clock", "journal"))
     check_callable(progress, "progress")
     TimeLimit.of(options.get("time_limit_s"))

@@ -62,7 +62,7 @@ from jbf.estimation.fit import finish
 from jbf.estimation.transients import without_transients
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import find_clock
-from jbf.models.chain import check_rig, default_law
+from jbf.models.chain import check_rig, default_law_of_diagnosis
 from jbf.models.vocabulary import AUTO, Clock
 from jbf.records.arguments import check_callable, list_of_runs, of_kind
 from jbf.records.rig import Rig
@@ -95,7 +95,7 @@ def diagnose(
     law, clock
         Base law, and the definition of the time constant of its film (`journal` or `thesis`). The
         law `auto` selects, among the laws that the rig allows, the simplest of those with the
-        smallest held-out errors. The default is `journal` for a bearing and `coulomb` for a drive.
+        smallest held-out errors. The default is `journal` for a bearing, otherwise `auto`.
     limits
         Limits of the rig for the next experiment; by default those of the runs.
     policy
@@ -138,7 +138,7 @@ def diagnose(
     >>> diagnosis.verdict, diagnosis.effects
     ('adequate', ())
     """
-    law = default_law(rig) if law is None else law
+    law = default_law_of_diagnosis(rig) if law is None else law
     reached, time_limit = Reached(), TimeLimit.of(time_limit_s)
     try:
         return _diagnose(rig, runs, law, clock, limits, policy, progress, time_limit, reached)

@@ -29,7 +29,7 @@ from jbf.records.rig import Rig
 
 OFFSET = "sensor_offset"
 MACHINE_TERMS = (OFFSET, "inertia", "gravity")
-"""Machine terms of a drive: effects that are not friction and that no law can represent."""
+"""Machine terms: effects that are not friction and that no law can represent."""
 
 
 def machine_of(rig: Rig, present: Iterable[str]) -> Names:
@@ -38,19 +38,26 @@ def machine_of(rig: Rig, present: Iterable[str]) -> Names:
 
 
 def start_model(candidates: Candidates) -> Names:
-    """Select the machine terms of a drive that the runs require, estimated jointly with the law."""
+    """Select the machine terms of a drive that the runs require, estimated jointly with the law.
+
+    Without a drive, the selection starts with the law alone.
+    """
+    if candidates.campaign.rig.drive is None:
+        return ()
     return still_needed(candidates, machine_terms(candidates))
 
 
 def machine_terms(candidates: Candidates) -> Names:
-    """Fit the law together with all machine terms of a drive that these runs can test.
+    """Fit the law together with all machine terms that these runs can test; none for a bearing.
 
-    The fit with each term starts from the fit without it, since a search from the starting values
-    of all terms may end at a weight of zero.
+    A load cell also reads the weight and the inertia of the parts between it and the friction. The
+    fit with each term starts from the fit without it, since a search from the starting values of
+    all terms may end at a weight of zero.
     """
     present: Names = ()
-    testable = [name for name in MACHINE_TERMS if name in candidates.names]
-    for name in machine_of(candidates.campaign.rig, testable):
+    if candidates.campaign.rig.bearing is not None:
+        return present
+    for name in (term for term in MACHINE_TERMS if term in candidates.names):
         near = candidates.converge(present)
         present = (*present, name)
         candidates.look(present, near)
@@ -59,13 +66,13 @@ def machine_terms(candidates: Candidates) -> Names:
 
 
 def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
-    """Return a drive's campaign with the covariance of the motion's errors in the likelihood.
+    """Return the campaign with the covariance of the motion's errors in the likelihood.
 
     The errors are estimated with all machine terms, since a fit that neglects them may reject an
-    inertia. The force is corrected by a time delay common to all runs. Returns None for a rig
-    without a drive, or if these errors are negligible.
+    inertia. The force is corrected by a time delay common to all runs. Returns None for a bearing,
+    or if these errors are negligible.
     """
-    if candidates.campaign.rig.drive is None:
+    if candidates.campaign.rig.bearing is not None:
         return None
     terms = machine_terms(candidates)
     problem, solution = candidates.fitted(terms).problem, candidates.converge(terms)

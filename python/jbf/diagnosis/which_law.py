@@ -120,7 +120,7 @@ def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
 
     All laws are then compared with the same motion errors.
     """
-    if campaign.rig.drive is None:
+    if campaign.rig.bearing is not None:
         return campaign
     separate = replace(campaign, work=campaign.work.part(1.0))
     candidates = Candidates(separate, SIMPLEST, clock, policy)

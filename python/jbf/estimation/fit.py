@@ -297,7 +297,7 @@ def fit(
         Names of effects to fit in addition to the law.
     law, clock
         Base law, and the definition of the time constant of its film (`journal` or `thesis`). The
-        default law is `journal` for a bearing and `coulomb` for a drive.
+        default law is `journal` for a bearing, otherwise `coulomb`.
     start, fixed
         Starting values, and values of parameters held fixed, by parameter name. Other starting
         values are those of the catalogue or, for a law in newtons, estimates from the data.

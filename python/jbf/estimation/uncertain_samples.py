@@ -166,13 +166,13 @@ def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
 
 
 def after_rests(p: Prepared, spread_s: float, least_n: float) -> Mask:
-    """Mask, shape (n,), of the samples of a drive that contain the unknown force at a rest.
+    """Mask, shape (n,), of the samples that contain the unknown force at a rest.
 
     The largest force of the run, decreasing from the end of the rest with the time constant
     `spread_s`, is above `least_n` at these samples.
     """
     resting, time_s = p.motion.resting, p.run.time_s
-    if p.rig.drive is None or not np.any(resting):
+    if p.rig.bearing is not None or not np.any(resting):
         return np.zeros(len(resting), dtype=bool)
     largest_n = float(np.max(np.abs(p.friction)))
     memory_s = spread_s * float(np.log(max(largest_n / max(least_n, 1e-300), 1.0)))

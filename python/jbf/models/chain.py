@@ -23,6 +23,7 @@ from jbf.models.driven import Driven, DrivenChain
 from jbf.models.user_chain import NONLINEAR_EFFECTS, UserChain
 from jbf.models.user_effects import MOTION_COLUMNS, UserEffect
 from jbf.models.user_laws import UserLaw
+from jbf.models.vocabulary import AUTO
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
@@ -88,9 +89,15 @@ def check_rig(rig: Rig, law: str) -> None:
 
 
 def default_law(rig: Rig) -> str:
-    """Law that a fit uses if none is named: `journal` for a bearing, `coulomb` for a drive."""
+    """Law of a fit if none is named: `journal` for a bearing, otherwise `coulomb`."""
     the_rig(rig)
-    return "journal" if rig.drive is None else "coulomb"
+    return "coulomb" if rig.bearing is None else "journal"
+
+
+def default_law_of_diagnosis(rig: Rig) -> str:
+    """Law of a diagnosis if none is named: `journal` for a bearing, otherwise `auto`."""
+    the_rig(rig)
+    return AUTO if rig.bearing is None else "journal"
 
 
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:

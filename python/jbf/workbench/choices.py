@@ -17,9 +17,9 @@ from jbf.reporting.effect_words import summary_of
 def first_law(rig: Rig) -> str:
     """Initial base law for a rig.
 
-    The law is `auto` for a drive, `journal` if the bearing data are complete, otherwise `stribeck`.
+    That of a diagnosis; `stribeck` for a bearing with incomplete data.
     """
-    if rig.drive is not None:
+    if rig.bearing is None:
         return AUTO
     try:
         check_rig(rig, "journal")

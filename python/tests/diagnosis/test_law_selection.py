@@ -187,8 +187,8 @@ def with_quadratic_drag(v: Array) -> Array:
     return np.asarray(0.25 * np.sign(v) + 0.1 * v + 0.7 * v * np.abs(v))
 
 
-def test_simplest_law_is_selected_if_it_predicts_as_well_with_the_same_effects() -> None:
-    found = diagnose(Rig(), sweeping(with_quadratic_drag, 0.03), law="auto")
+def test_simplest_law_is_selected_by_default_if_it_predicts_as_well_with_the_same_effects() -> None:
+    found = diagnose(Rig(), sweeping(with_quadratic_drag, 0.03))
     assert (found.model.law, found.effects) == ("coulomb", ("quadratic_drag",)), found.summary()
     held_out = {law.law: law.held_out_rms for law in found.laws}
     assert held_out["stribeck"] < held_out["coulomb"]

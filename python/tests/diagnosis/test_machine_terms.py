@@ -84,8 +84,12 @@ def test_viscous_friction_that_differs_by_direction_is_named_without_an_offset()
     assert_machine_is_found(found)
 
 
-def test_default_law_of_a_drive_is_coulomb_friction() -> None:
+def test_default_law_without_a_bearing_is_coulomb_friction() -> None:
     assert fit(DRIVE, RUNS[:1]).model.law == "coulomb"
+    time = 0.01 * np.arange(200)
+    speed = 0.1 * np.sin(6.0 * time)
+    run = Run.from_arrays(time, speed, 5.0 * np.sign(speed) + 8.0 * speed)
+    assert fit(Rig(), [run]).model.law == "coulomb"
 
 
 def test_machine_terms_without_influence_on_the_runs_are_omitted() -> None:

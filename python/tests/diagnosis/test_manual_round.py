@@ -106,4 +106,4 @@ def test_invalid_argument_of_diagnose_is_reported(arguments: dict[str, Any], nam
 
 def test_diagnosis_with_a_bearing_law_is_rejected_for_a_rig_without_bearing() -> None:
     with pytest.raises(InputError, match=r"\[bearing\]"):
-        diagnose(Rig(), linear_runs("mass"))
+        diagnose(Rig(), linear_runs("mass"), law="journal")

@@ -68,6 +68,30 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
 
 
 @pytest.mark.parametrize(
+    ("seed", "hidden"),
+    [
+        pytest.param(4851, (), id="late force"),
+        pytest.param(5133, (), id="hand", marks=EXTENDED),
+        pytest.param(4925, ("pitch_ripple",), id="pitch_ripple", marks=EXTENDED),
+    ],
+)
+def test_load_cell_without_a_drive_reads_the_inertia_and_no_errors_of_the_motion(
+    seed: int, hidden: tuple[str, ...]
+) -> None:
+    _, runs = recorded(seed, hidden)
+    runs = [
+        jbf.Run.from_arrays(
+            run.time_s,
+            friction=run.friction,
+            position_m=run.position_m if run.angle_rad is None else run.angle_rad,
+        )
+        for run in runs
+    ]
+    found = jbf.diagnose(jbf.Rig(), runs, law="coulomb")
+    assert set(found.effects) == {"inertia", *hidden}, found.summary()
+
+
+@pytest.mark.parametrize(
     ("seed", "effect"),
     [
         pytest.param(4049, "cogging", marks=EXTENDED),

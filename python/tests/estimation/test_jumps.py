@@ -251,14 +251,14 @@ def test_reversal_is_a_sign_change_without_a_rest(velocity: Any, unknown: Any, f
     assert (int(found[0]) if len(found) else None) == first
 
 
-def test_force_at_rest_of_a_drive_is_forgotten_with_the_time_constant_of_the_sensor() -> None:
+@pytest.mark.parametrize("rig", [DRIVE, Rig()], ids=["drive", "load cell"])
+def test_force_at_rest_is_forgotten_with_the_time_constant_of_the_sensor(rig: Rig) -> None:
     """A force of 5 N decreases to 5 N exp(-3) in three time constants of one sample."""
-    p = prepared([0.0, 1.0, 1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0, -1.0], rig=DRIVE)
+    p = prepared([0.0, 1.0, 1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0, -1.0], rig=rig)
     largest_n = float(np.max(np.abs(p.friction)))
     excluded = after_rests(p, STEP_S, largest_n * np.exp(-3.0) * 0.99)
     assert excluded.tolist() == [True] * 4 + [False] + [True] * 4 + [False]
-    assert not after_rests(prepared([0.0, 1.0, 1.0]), STEP_S, 1e-9).any()
-    assert not after_rests(prepared([1.0, 1.0, 1.0], rig=DRIVE), STEP_S, 1e-9).any()
+    assert not after_rests(prepared([1.0, 1.0, 1.0], rig=rig), STEP_S, 1e-9).any()
 
 
 def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:

@@ -151,7 +151,7 @@ def _errors_of_motion(candidates: Candidates, present: Names) -> Proposal | None
     The effect `time_delay` is omitted, since a common delay is estimated with the errors.
     """
     fitted = candidates.fitted(present)
-    if MOTION not in fitted.proposals and candidates.campaign.rig.drive is not None:
+    if MOTION not in fitted.proposals and candidates.campaign.rig.bearing is None:
         model = _model(candidates, without_delay(present), present)
         fitted.proposals[MOTION] = errors_of_motion(model)
     return fitted.proposals.get(MOTION)

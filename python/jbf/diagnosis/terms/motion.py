@@ -1,4 +1,4 @@
-"""Term of the observation model: errors of the estimated motion of a drive."""
+"""Term of the observation model: errors of the estimated motion."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def errors_of_motion(model: Model) -> Proposal | None:
 
     They may have been negligible, or the delay wrong, next to the error of a model with fewer
     effects. The gain is relative to the reference model with the present errors of the motion, and
-    the threshold is reduced by those of effects that the model lacks. None for a rig without a
-    drive, or if the errors are negligible.
+    the threshold is reduced by those of effects that the model lacks. None for a bearing, or if the
+    errors are negligible.
     """
     campaign, reference = model.campaign, model.reference
-    if campaign.rig.drive is None:
+    if campaign.rig.bearing is not None:
         return None
     again, after = with_motion_errors(
         *fit_without_motion_corrections(model.problem, model.solution)

@@ -10,6 +10,7 @@ import numpy as np
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, full_gain, is_due_to_smoothing
+from jbf.diagnosis.fit_state import INSTEAD_OF_ERRORS
 from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.remainders import remainder_of, remainders_of_selection
 from jbf.diagnosis.review import reconsider, start_model, still_needed
@@ -197,8 +198,7 @@ class _Selection:
             elif self._may_update:
                 update = re_estimated  # the leader is `time_delay`: its delay is corrected
         if update is not None:
-            self._update_terms(update, add_more=False)
-            return True
+            return self._update_terms(update, add_more=False)
         return self._extend(_with_leader(self.candidates, self.present, trial_round))
 
     def _add_terms(self) -> bool:
@@ -206,26 +206,35 @@ class _Selection:
         if self.follow != "promising" or not self._may_update:
             return False
         update = best_term_update(self.candidates, self.present)
-        if update is not None:
-            self._update_terms(update, add_more=True)
-        return update is not None
+        return update is not None and self._update_terms(update, add_more=True)
 
-    def _update_terms(self, update: Update | None, *, add_more: bool) -> None:
-        """Change the observation model; with `add_more`, until no further term is accepted."""
-        before = self.present
+    def _update_terms(self, update: Update | None, *, add_more: bool) -> bool:
+        """Change the observation model; with `add_more`, until no further term is accepted.
+
+        An effect in place of errors of the motion may be unnecessary with the errors estimated
+        again. It is then refused together with these errors. Returns whether the model changed.
+        """
+        before, changed = self.present, False
         while update is not None:
             self.updates += 1
-            self.candidates = self.candidates.with_campaign(*update)
+            candidates = self.candidates.with_campaign(*update)
             kept = [n for n in self.present if n in update.effects]
             added = [n for n in update.effects if n not in self.present]
-            self.present = still_needed(self.candidates, (*kept, *added))
+            present = still_needed(candidates, (*kept, *added))
+            if set(added) <= set(present):
+                self.candidates, self.present, changed = candidates, present, True
+            else:
+                self.candidates.fitted(self.present).proposals[INSTEAD_OF_ERRORS] = None
             more = add_more and self._may_update
             update = best_term_update(self.candidates, self.present) if more else None
+        if not changed:
+            return False
         self.follow = "promising"
         self._forget()
         # Without a further effect, the next step replaces this one.
         if set(self.present) <= set(before):
             self.steps.pop()
+        return True
 
     def _exchange(self, trial_round: Round) -> bool:
         """Exchange or remove effects, once for each model."""

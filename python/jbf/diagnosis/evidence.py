@@ -49,7 +49,7 @@ def evidence(
         # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
-    if effect_may_describe_motion_errors(richer, simpler):
+    if effect_may_describe_motion_errors(candidates, richer, simpler):
         gain = min(gain, 0.0)
     return gain - price
 
@@ -63,7 +63,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
     if (
         _adds_idle_effect(candidates, richer, simpler)
         or _differ_by_less_than_quantisation(candidates.campaign, richer, simpler)
-        or effect_may_describe_motion_errors(richer, simpler)
+        or effect_may_describe_motion_errors(candidates, richer, simpler)
     ):
         return 0.0
     richer, simpler = replace(richer, noise=WHITE), replace(simpler, noise=WHITE)
@@ -80,33 +80,43 @@ def _adds_idle_effect(candidates: Candidates, richer: Solution, simpler: Solutio
     return bool(set(idle) - set(simpler.effects))
 
 
-def effect_may_describe_motion_errors(richer: Solution, simpler: Solution) -> bool:
+def effect_may_describe_motion_errors(
+    candidates: Candidates, richer: Solution, simpler: Solution
+) -> bool:
     """Whether an effect that was added to `simpler` may describe errors of the motion only."""
     if not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
     samples = common_samples(richer.samples, simpler.samples)
     rms, rms_without = (samples.rms(s.residuals) for s in (richer, simpler))
-    return may_describe_motion_errors(rms, rms_without, samples)
+    return may_describe_motion_errors(candidates, rms, rms_without, samples)
 
 
-def may_describe_motion_errors(rms: float, rms_without: float, samples: Samples) -> bool:
+def may_describe_motion_errors(
+    candidates: Candidates, rms: float, rms_without: float, samples: Samples
+) -> bool:
     """Whether an effect that distorts the force may describe errors of the motion only.
 
     Such an effect filters the predicted force, and with it the errors of the motion. The whitening
     assumes unfiltered errors, and the likelihood of the effect may be too large. An effect that
-    explained exactly these errors would leave the mean square without their share.
+    explained exactly these errors would leave the mean square without their share. This share is at
+    least `max_effect_share`, since the errors of time stamps, loads and corners of the motion are
+    not in the likelihood. False for a bearing, whose errors of the motion are not estimated.
 
     Parameters
     ----------
+    candidates
+        Fits to the campaign.
     rms, rms_without
         RMS of the residuals with and without the effect, N.
     samples
         The samples, with the errors of the motion.
     """
-    if samples.motion is None:
+    if candidates.campaign.rig.bearing is not None:
         return False
-    other_part = 1.0 - samples.motion.variance_share(samples.weight)
-    return rms**2 > other_part * rms_without**2
+    motion, share = samples.motion, candidates.policy.motion.max_effect_share
+    if motion is not None:
+        share = max(share, motion.variance_share(samples.weight))
+    return rms**2 > (1.0 - share) * rms_without**2
 
 
 def _differ_by_less_than_quantisation(

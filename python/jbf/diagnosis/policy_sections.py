@@ -272,7 +272,8 @@ class Motion:
     max_effect_share: float = documented(
         0.015,
         "share of the mean square that an effect or a better law must explain where the errors of "
-        "the motion have a larger share of the variance",
+        "the motion have a larger share of the variance, and that an effect that distorts the "
+        "force must always explain without a bearing",
         "false effects explained less in most simulated servo drives (seeds 4938 to 5012)",
     )
 

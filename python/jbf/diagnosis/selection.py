@@ -115,7 +115,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "negligible"
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
         enough = likelihood_gain(candidate.solution, base) > candidates.price(1)
-        if enough and effect_may_describe_motion_errors(candidate.solution, base):
+        if enough and effect_may_describe_motion_errors(candidates, candidate.solution, base):
             reason = OF_MOTION_ERRORS
         if np.isfinite(candidate.limit):
             outcome = "rejected"

@@ -36,6 +36,8 @@ DELAY_STEP = 0.02
 """Tolerance of a delay of the force, in sampling intervals."""
 SETTLED_DELAY = 0.2
 """Tolerance of a delay of the force, in standard errors, if this is larger."""
+MAX_DELAY_STEPS = 12
+"""Largest number of steps of the search for a delay."""
 FARTHEST = 2.0
 """Largest difference of a delay from the start of its search, in sampling intervals."""
 DELAY_SPAN = 0.1
@@ -240,21 +242,18 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     is less accurate: the covariance, and with it the likelihood, is discontinuous where a sample
     crosses a corner of the motion.
 
-    Newton's method starts at the delay of the fit `start`, and estimates the covariance again after
-    each step. The standard error is infinite if it does not converge within two sampling intervals.
+    The Gauss-Newton method starts at the delay of the fit `start`, and estimates the covariance
+    again after each step. A step that reverses the direction of the last one is halved. The
+    standard error is infinite if the delay does not converge within two sampling intervals.
     """
     step_s = _shortest_step_s(start.first)
-    span_s = DELAY_SPAN * step_s
-    delay_s, reference = start.delay_s, start
-    for _ in range(ROUNDS):
-        before, at, after = _squares(reference, delay_s + span_s * np.array([-1.0, 0.0, 1.0]))
-        # The sum of squares rises by one at one standard error.
-        curvature = 0.5 * (before + after) - at
-        if curvature <= 0.0:
-            break
-        sd_s = span_s / curvature**0.5
-        change_s = 0.25 * (before - after) / curvature * span_s
-        delay_s += float(np.clip(change_s, -0.5 * step_s, 0.5 * step_s))
+    delay_s, reference, last_s = start.delay_s, start, 0.0
+    for _ in range(MAX_DELAY_STEPS):
+        change_s, sd_s = _delay_step(reference, delay_s, DELAY_SPAN * step_s)
+        change_s = float(np.clip(change_s, -0.5 * step_s, 0.5 * step_s))
+        if change_s * last_s < 0.0:
+            change_s *= 0.5
+        delay_s, last_s = delay_s + change_s, change_s
         if abs(delay_s - start.delay_s) > FARTHEST * step_s:
             break
         if abs(change_s) < max(DELAY_STEP * step_s, SETTLED_DELAY * sd_s):
@@ -263,22 +262,28 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     return start.delay_s, np.inf
 
 
-def _squares(reference: DelayedFit, delays_s: Array) -> Array:
-    """Whitened sums of squares, divided by the noise variance, for several delays of the force.
+def _delay_step(reference: DelayedFit, delay_s: float, span_s: float) -> tuple[float, float]:
+    """Gauss-Newton step from a delay of the force, and the standard error of the delay, s.
 
-    Covariance and weights are those of the reference fit. The other parameters are fitted in linear
-    approximation. The samples are those that all delays use.
+    Covariance and weights are those of the reference fit. The residuals are differentiated by a
+    central difference of half-width `span_s`, at the samples that both delays use. The other
+    parameters are fitted in linear approximation.
     """
     problem, samples, motion = reference.first, reference.solution.samples, reference.motion
     fits = [
-        near_solution(shifted(problem, float(delay_s)), reference.solution) for delay_s in delays_s
+        near_solution(shifted(problem, delay_s + change_s), reference.solution)
+        for change_s in (-span_s, span_s)
     ]
     used = samples.within(
         [np.all(c, axis=0) for c in zip(*(f.samples.counted for f in fits), strict=True)]
     )
     whitening = motion.whitening([w * c for w, c in zip(used.weight, used.counted, strict=True)])
-    rows = (whitening.stacked(fit.residuals, fit.jacobian) for fit in fits)
-    return np.array([unexplained_square(j, r) for r, j in rows]) / motion.noise**2
+    (r, j), (after, j_after) = (whitening.stacked(f.residuals, f.jacobian) for f in fits)
+    slope = 0.25 * (unexplained_square(j_after, after) - unexplained_square(j, r))
+    curvature = unexplained_square(0.5 * (j + j_after), 0.5 * (after - r))
+    if curvature <= 0.0:
+        return 0.0, np.inf
+    return -slope / curvature * span_s, span_s * motion.noise / curvature**0.5
 
 
 def fit_with_delay(

@@ -67,7 +67,7 @@ NUMERICAL = {
         estimation.parallel_fits: MOST_AT_ONCE MAX_PARALLEL_SAMPLES
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
-        estimation.delayed_fits: ROUNDS EVALUATIONS
+        estimation.delayed_fits: ROUNDS EVALUATIONS MAX_DELAY_STEPS
         estimation.held_out: EVALUATIONS
         estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP BLOCK
         estimation.approach: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED

@@ -78,7 +78,7 @@ def axis_run(record: AxisRun, path: str) -> Run:
 
 
 def _drive(seed: int, path: str, *effects: str, swing: float = 1.0) -> Simulated:
-    records, truth = axis_campaign(seed, effects, swing=swing)
+    records, truth = axis_campaign(seed, effects, swing=swing, runs=3)
     noise_rms: Any = truth["noise_n"]
     return Rig(), [axis_run(record, path) for record in records], noise_rms
 
@@ -153,6 +153,14 @@ GOLDEN = {
     ),
 }
 """The campaigns by name."""
+EXTENDED = (
+    "bearing_two_effects",
+    "slide_nothing_missing",
+    "slide_load_dependence",
+    "recorded_late_force",
+    "recorded_gaps_lag",
+)
+"""Campaigns whose diagnoses are computed in the extended suite only."""
 
 
 @cache

@@ -28,7 +28,7 @@ def residuals(model: Model, runs: Sequence[Run]) -> list[np.ndarray]:
 
 
 def test_rms_and_differences_are_those_of_single_comparisons() -> None:
-    runs = many_runs(7)
+    runs = many_runs(3)
     models = {"low": coulomb_model(4.7), "true": coulomb_model(5.0), "high": coulomb_model(5.6)}
     compared = compare(models, runs)
     assert [m.name for m in compared.models] == ["true", "low", "high"]

@@ -77,7 +77,9 @@ def test_two_simulated_effects_are_added_in_successive_steps() -> None:
         assert_recovered(found.fit.parameters[name], true)
 
 
-@pytest.mark.parametrize("hidden", ["nothing", "offset and drag", "lag"])
+@pytest.mark.parametrize(
+    "hidden", ["nothing", "offset and drag", pytest.param("lag", marks=pytest.mark.extended)]
+)
 def test_fits_that_are_not_continued_do_not_change_the_diagnosis(hidden: str) -> None:
     """With larger limits of the gain, every candidate with a sufficient score is ranked."""
     found = linear_diagnosis(hidden)

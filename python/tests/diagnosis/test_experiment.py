@@ -80,7 +80,7 @@ def residual_square_after_fit(
     return float(gap @ gap - explained @ step) / rival.noise_rms**2
 
 
-@pytest.mark.parametrize("pairs", [1, 2])
+@pytest.mark.parametrize("pairs", [pytest.param(1, marks=pytest.mark.extended), 2])
 def test_proposed_run_maximises_the_smallest_separation_between_rivals(pairs: int) -> None:
     """Each model of a pair may be the true one; models of different pairs are not compared."""
     tried, groups = four_effects(), (PAIR, OTHER)[:pairs]

@@ -147,10 +147,7 @@ SWING = 8.0
 """Ratio of the motion of a joint that carries a weight to that of a slide."""
 FAST_FITS = (
     "gravity",
-    "spring",
     "torque_proportional",
-    "viscous_asymmetry",
-    "zero_load_dependence",
     "viscous_temperature_dependence",
 )
 
@@ -231,7 +228,7 @@ def test_hidden_effect_of_a_drive_is_named_without_alternatives(name: str) -> No
 @cache
 def _joint_with_spring(swing: float) -> tuple[Diagnosis, float]:
     """Diagnosis of a joint with a spring, and the true stiffness (N m/rad)."""
-    records, truth = axis_campaign(18, ("spring",), swing=swing)
+    records, truth = axis_campaign(18, ("spring",), swing=swing, runs=2)
     rig = Rig(drive=Drive("rotary", "torque"))
     hidden: Any = truth["effects"]
     return diagnose(rig, _runs(records, "angle_rad"), law="coulomb"), hidden["spring"]["k"]
@@ -265,7 +262,7 @@ def test_running_in_of_a_simulated_drive_is_named_without_alternatives() -> None
 
 def test_gear_losses_are_fitted_as_an_efficiency_ratio_and_a_scaled_weight() -> None:
     """Losses of 0.3 when driving and 0.1 when driven multiply the estimated weight by 1.1."""
-    records, truth = axis_campaign(17, ("gravity",), swing=SWING)
+    records, truth = axis_campaign(17, ("gravity",), swing=SWING, runs=3)
     hidden: Any = truth["effects"]
     gravity = hidden["gravity"]
     for r in records:
@@ -288,7 +285,8 @@ def test_torque_proportional_friction_is_held_if_no_torque_is_transmitted() -> N
 
 def test_load_parameter_is_the_same_with_a_recorded_pressure() -> None:
     name = "dry_load_dependence"
-    runs, truth = _drive(13, name)
+    records, truth = _drive(13, name)
+    runs = records[:3]  # one run at each load
     pressed = [
         replace(r, load_n=None, extra={"pressure_pa": 1e5 * np.asarray(r.load_n)}) for r in runs
     ]

@@ -30,7 +30,7 @@ def swinging(seed: int) -> Run:
     )
 
 
-RUNS = [swinging(seed) for seed in (1, 2, 3, 4)]
+RUNS = [swinging(seed) for seed in (1, 2, 3)]
 DRIVE = Rig(drive=Drive("rotary", "torque"))
 
 
@@ -125,7 +125,7 @@ def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
 def test_weight_is_identified_in_the_presence_of_a_large_inertia() -> None:
     """A joint search from the starting values of all terms ends at a weight of zero."""
     rng = np.random.default_rng(5)
-    plan = ((0.6, 0.3), (0.4, 0.6), (0.8, 0.25), (0.5, 0.5), (0.3, 0.8), (0.7, 0.35))
+    plan = ((0.6, 0.3), (0.4, 0.6), (0.8, 0.25))
     found = diagnose(DRIVE, [swept(*motion, rng) for motion in plan], law="coulomb")
     assert set(found.machine) == {"sensor_offset", "inertia", "gravity"}, found.summary()
     assert found.verdict == "adequate"

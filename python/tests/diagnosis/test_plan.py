@@ -137,8 +137,8 @@ def test_planned_power_allows_for_uncertain_instants_of_reversals() -> None:
 def test_plan_for_a_shaft_has_its_angle_and_the_default_acceleration() -> None:
     """The default acceleration limit is that of a sine at 2 rad/s with the largest speed."""
     model = Model(Rig(drive=Drive("rotary", "torque")), "coulomb", parameters=MODEL.parameters)
-    limits = Limits(2.0, duration_s=15.0)
-    found = plan(model, limits=limits, minutes=0.75, noise_rms=NOISE_N, step_s=STEP_S)
+    limits = Limits(2.0, duration_s=10.0)
+    found = plan(model, limits=limits, minutes=0.5, noise_rms=NOISE_N, step_s=STEP_S)
     allowed = excitations(replace(limits, acceleration=4.0), STEP_S, "rad/s")
     assert set(found.words) <= {e.words for e in allowed}
     assert max(np.max(np.abs(np.diff(run.velocity))) for run in found.runs) > 3.0 * STEP_S
@@ -172,7 +172,7 @@ def test_plan_with_invalid_limits_or_duration_is_rejected_with_the_reason(
 
 
 @pytest.mark.parametrize(
-    ("run_s", "loads"), [("10", ()), pytest.param("30", ("50", "150"), marks=pytest.mark.extended)]
+    ("run_s", "loads"), [("6", ()), pytest.param("30", ("50", "150"), marks=pytest.mark.extended)]
 )
 def test_plan_command_writes_runs_that_the_power_command_reads(
     run_s: str, loads: tuple[str, ...], tmp_path: Path
@@ -214,7 +214,7 @@ def test_plan_stays_within_the_given_or_the_recorded_travel(
     friction = coulomb(t, 0.1 * np.sin(t), t) + 0.1 * np.random.default_rng(0).normal(size=1000)
     run = Run.from_arrays(t, 0.1 * np.sin(t), friction, position_m=1.0 - 0.1 * np.cos(t))
     fit(Rig(), [run], law="coulomb").model.save(path)
-    command = ["plan", str(path), "--minutes", "1", "--run-s", "20", "--max-velocity", "0.2"]
+    command = ["plan", str(path), "--minutes", "0.5", "--run-s", "10", "--max-velocity", "0.2"]
     command += ["--folder", str(out), "--json", str(table), *options]
     assert main(command) == 0
     found = json.loads(table.read_text())

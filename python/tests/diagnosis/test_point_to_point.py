@@ -17,12 +17,12 @@ def test_holding_force_between_moves_causes_neither_an_effect_nor_residual_struc
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
 
 
-@pytest.mark.parametrize("seeds", [(6, 7), (8, 9)])
+@pytest.mark.parametrize("seeds", [(6, 7), pytest.param((8, 9), marks=pytest.mark.extended)])
 def test_lag_of_the_load_cell_is_not_attributed_to_the_motion(seeds: tuple[int, ...]) -> None:
     """A low-pass filter of six samples; without it, the errors of the acceleration seem large."""
     runs = [
         Run.from_arrays(run.time_s, None, run.friction, position_m=run.position_m, name=run.name)
-        for run in point_to_point(seeds, duration_s=12.0, lag_s=0.012)
+        for run in point_to_point(seeds, duration_s=8.0, lag_s=0.012)
     ]
     found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
     assert found.effects == ("sensor_lag",), found.summary()

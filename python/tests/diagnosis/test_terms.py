@@ -68,7 +68,7 @@ def test_gain_of_variances_by_run_is_that_of_normal_likelihoods() -> None:
     )
 
 
-@pytest.mark.parametrize("unit", [1.0, 1e3])
+@pytest.mark.parametrize("unit", [pytest.param(1.0, marks=pytest.mark.extended), 1e3])
 def test_gain_of_variances_is_invariant_to_units_with_an_effect_that_moves_jumps(
     unit: float,
 ) -> None:
@@ -117,7 +117,9 @@ def test_gain_of_heavy_tails_is_that_of_the_student_distribution() -> None:
     assert gain == pytest.approx(2.0 * (student - normal), rel=0.02)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.extended) for seed in range(1, 5))]
+)
 def test_no_term_is_accepted_in_white_noise(seed: int) -> None:
     fitted = model(white, seed=seed)
     assert [term.__name__ for term in TERMS if is_accepted(term(fitted), fitted)] == []

@@ -80,7 +80,10 @@ def test_limit_reached_in_the_first_round_raises_unfinished_with_the_fitted_law(
     assert (ended.value.fit.model.law, ended.value.fit.model.effects) == ("coulomb", ())
 
 
-@pytest.mark.parametrize("share", [0.5, 0.6, 0.7, 0.8, 0.9, 1.0])
+@pytest.mark.parametrize(
+    "share",
+    [0.5, *(pytest.param(s, marks=pytest.mark.extended) for s in (0.6, 0.7, 0.8, 0.9)), 1.0],
+)
 def test_limit_reached_at_a_report_gives_the_best_model_and_what_was_not_tested(
     share: float,
 ) -> None:

@@ -209,7 +209,7 @@ def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> Non
     assert corrected(*fitted(one_way_campaign((30e-3,) * 4, seed=seed))) is None
 
 
-@pytest.mark.parametrize("delay_s", [8e-3, 12e-3])
+@pytest.mark.parametrize("delay_s", [8e-3, pytest.param(12e-3, marks=EXTENDED)])
 def test_common_delay_is_not_corrected_as_a_clock_drift(delay_s: float) -> None:
     assert corrected(*fitted(reversing_campaign((delay_s,) * 4))) is None
     assert corrected(*fitted(one_way_campaign((delay_s,) * 4))) is None

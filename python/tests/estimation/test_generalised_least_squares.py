@@ -18,6 +18,7 @@ from jbf.records.motion.estimated_motion import estimate_motion
 
 Array = npt.NDArray[np.float64]
 STEP_S = 0.004
+EXTENDED = pytest.mark.extended
 INERTIA, COULOMB, VISCOUS = 0.05, 0.4, 0.1
 NOISE = 0.02
 
@@ -49,14 +50,16 @@ def errors_of(runs: list[Run]) -> dict[str, float]:
     return {n: (p.value - TRUE[n]) / (p.stderr or np.nan) for n, p in parameters.items()}
 
 
-@pytest.mark.extended
+@EXTENDED
 def test_parameters_of_a_drive_with_a_coarse_encoder_are_within_their_errors() -> None:
     errors = np.array([list(errors_of([drive(seed)]).values()) for seed in range(8)])
     assert np.max(np.abs(errors)) < 4.0
     assert np.sqrt(np.mean(errors**2)) < 1.6
 
 
-@pytest.mark.parametrize("delay", [-0.7, 0.4, 1.2, -5.2, 12.3])
+@pytest.mark.parametrize(
+    "delay", [*(pytest.param(d, marks=EXTENDED) for d in (-0.7, 0.4, 1.2, -5.2)), 12.3]
+)
 def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) -> None:
     """Unit: samples."""
     runs = [drive(seed, delay * STEP_S) for seed in (21, 22)]
@@ -87,7 +90,9 @@ def moves_from_rest(delay_s: float, step_s: float) -> Run:
     return Run.from_arrays(time_s, None, force, position_m=counted, name="moves")
 
 
-@pytest.mark.parametrize("delay", [-0.6, 0.3, 0.7, -5.3])
+@pytest.mark.parametrize(
+    "delay", [*(pytest.param(d, marks=EXTENDED) for d in (-0.6, 0.3, 0.7)), -5.3]
+)
 def test_delay_of_the_force_is_found_from_abrupt_moves(delay: float) -> None:
     """Unit: samples of 10 ms. Friction is not linear in a delay where a move begins abruptly."""
     found = fit(Rig(), [moves_from_rest(delay * 0.01, 0.01)], ["inertia"], law="coulomb")
@@ -148,7 +153,7 @@ def hoist(seed: int, delay_s: float) -> Run:
     return Run.from_arrays(time_s, None, force, position_m=counted, name=f"seed_{seed}")
 
 
-@pytest.mark.parametrize("delay", [-0.4, 0.0, 0.3])
+@pytest.mark.parametrize("delay", [pytest.param(-0.4, marks=EXTENDED), 0.0, 0.3])
 def test_delay_of_a_fraction_of_a_sample_is_found_and_none_is_invented(delay: float) -> None:
     """Unit: samples. Between samples, the estimated motion is smoother than at them."""
     found = fit(Rig(), [hoist(seed, delay * 0.01) for seed in range(3)], ["inertia"], law="coulomb")
@@ -184,7 +189,7 @@ def stage(seed: int, delay_s: float) -> Run:
     )
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.6])
+@pytest.mark.parametrize("delay", [0.0, pytest.param(0.6, marks=EXTENDED)])
 def test_moves_of_minimum_jerk_have_only_the_simulated_delay(delay: float) -> None:
     """Unit: samples. Of these runs without a delay, one of -0.2 samples is likelier than none."""
     runs = [stage(seed, delay * 0.001) for seed in (8, 9)]
@@ -295,7 +300,7 @@ def presliding_run(seed: int, deflection: float, count: float) -> Run:
 
 @pytest.mark.parametrize(
     ("deflection", "count"),
-    [(5e-3, 1e-4), pytest.param(5e-3, 1.5e-3, marks=pytest.mark.extended)],
+    [(5e-3, 1e-4), pytest.param(5e-3, 1.5e-3, marks=EXTENDED)],
 )
 def test_presliding_is_not_taken_for_errors_of_the_motion(deflection: float, count: float) -> None:
     """Corners of the motion can imitate presliding, with residuals many times as large."""

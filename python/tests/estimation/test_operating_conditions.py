@@ -89,7 +89,7 @@ def test_reference_temperature_is_that_of_the_lubricant_or_the_mean_of_the_recor
 
 def test_fit_does_not_depend_on_the_reference_temperature() -> None:
     """With a (T - T_0) the coefficient for another reference T_1 is `a / (1 + a (T_1 - T_0))`."""
-    runs = drive_runs(31, DRY)
+    runs = drive_runs(31, DRY, runs=3)
     found = fit(Rig(), runs, [DRY], **COULOMB)
     reference = found[f"{DRY}.T_0"]
     assert reference.held

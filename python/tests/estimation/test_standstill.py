@@ -13,7 +13,7 @@ from point_to_point import BREAKAWAY_N, COULOMB_N, TRUTH, point_to_point
 @pytest.mark.parametrize(
     ("law", "effects", "options"),
     [
-        ("coulomb", ["inertia"], {}),
+        pytest.param("coulomb", ["inertia"], {}, marks=pytest.mark.extended),
         pytest.param("stribeck", ["inertia"], {}, marks=pytest.mark.extended),
         ("coulomb", ["inertia", "sensor_offset"], {"bias_n": 5.0}),
         pytest.param("coulomb", ["inertia"], {"integral_1_s": 8.0}, marks=pytest.mark.extended),

@@ -3,6 +3,7 @@
 import gzip
 import json
 import shlex
+import shutil
 from datetime import datetime, timedelta
 from pathlib import Path
 
@@ -83,10 +84,24 @@ def write_force(gain: float = -2.0, drift_ppm: float = FORCE_PPM, **more: Array)
     write("force.csv", **columns | more)
 
 
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with drive.csv (500 Hz), force.csv (200 Hz), temp.csv (2 Hz), map.toml, two.toml."""
+    folder = tmp_path_factory.mktemp("recorded")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        write_recording()
+    return folder
+
+
 @pytest.fixture(autouse=True)
-def working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Work in a folder with drive.csv (500 Hz), force.csv (200 Hz), temp.csv (2 Hz), map.toml."""
+def working_folder(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work in a copy of the folder with the recording."""
+    shutil.copytree(recorded, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
+
+
+def write_recording() -> None:
     rng = np.random.default_rng(1)
     true_s = np.arange(0.0, DURATION_S, 1 / 500)
     pos = 1e3 * position(true_s)

@@ -19,7 +19,7 @@ def run_with(friction: Any) -> Run:
     return Run.from_arrays(TIME_S, SPEED_M_S, friction, name="a")
 
 
-@pytest.mark.parametrize("digits", [4, 6, 15])
+@pytest.mark.parametrize("digits", [4, pytest.param(6, marks=pytest.mark.extended), 15])
 def test_noise_floor_of_a_command_is_unknown_and_no_error_is_relative_to_it(digits: int) -> None:
     comparison = compare(MODEL, [run_with(np.round(FORCE_N, digits))])
     assert "smooth_force" in {f.kind for f in comparison.findings}

@@ -28,7 +28,13 @@ def cells(lines: list[str], name: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "name", ["bearing_two_effects", "bearing_one_direction", "bearing_hum", "joint_gravity"]
+    "name",
+    [
+        pytest.param("bearing_two_effects", marks=pytest.mark.extended),
+        "bearing_one_direction",
+        "bearing_hum",
+        "joint_gravity",
+    ],
 )
 def test_summary_of_a_computed_diagnosis_has_verdict_errors_and_estimates(name: str) -> None:
     diagnosis = golden(name)

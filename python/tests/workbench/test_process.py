@@ -65,7 +65,10 @@ def started(folder: Path, *more: str) -> Iterator[tuple[subprocess.Popen[str], A
         process.communicate()
 
 
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
+@pytest.mark.parametrize(
+    "name",
+    ["SIGTERM", *(pytest.param(n, marks=pytest.mark.extended) for n in ("SIGHUP", "SIGINT"))],
+)
 def test_signal_during_a_fit_ends_the_process_quietly(tmp_path: Path, name: str) -> None:
     number = getattr(signal, name)
     with started(tmp_path, "--demo") as (process, ask):

@@ -147,7 +147,7 @@ def run(options: DiagnoseOptions) -> int:
             diagnosis = diagnose(
                 rig,
                 runs,
-                law=inputs.law_for(rig, law),
+                law=inputs.law_of_diagnosis(rig, law),
                 clock=options.law.clock,
                 limits=limits_of_rig,
                 policy=policy,

@@ -26,7 +26,7 @@ _imports: list[Import] = []
 """Imports kept until the command ends, because their temporary folders are deleted with them."""
 
 
-def law_for(on: Rig, requested: str | None) -> str:
+def law_of_diagnosis(on: Rig, requested: str | None) -> str:
     """Law of a diagnosis: the requested one, otherwise the default for the rig."""
     return requested or default_law_of_diagnosis(on)
 
@@ -76,7 +76,7 @@ def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
 
 def _check(on: Rig, law: str | None) -> None:
     """Raise an InputError if the rig lacks data that the law needs."""
-    law = law_for(on, law)
+    law = law_of_diagnosis(on, law)
     if law != AUTO:
         check_rig(on, law)
 

@@ -5,10 +5,11 @@ All values are in twice the log likelihood.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
-from jbf.estimation.campaign import DISTORTS_FORCE, Campaign
+from jbf.estimation.campaign import DISTORTS_FORCE, FILTERS_FORCE, Campaign
 from jbf.estimation.generalised_least_squares import gain_with_less_smoothing
 from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.likelihood import (
@@ -84,28 +85,36 @@ def effect_may_describe_motion_errors(
     candidates: Candidates, richer: Solution, simpler: Solution
 ) -> bool:
     """Whether an effect that was added to `simpler` may describe errors of the motion only."""
-    if not DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects)):
+    added = DISTORTS_FORCE & (set(richer.effects) - set(simpler.effects))
+    if not added:
         return False
     samples = common_samples(richer.samples, simpler.samples)
     rms, rms_without = (samples.rms(s.residuals) for s in (richer, simpler))
-    return may_describe_motion_errors(candidates, rms, rms_without, samples)
+    return may_describe_motion_errors(candidates, added, rms, rms_without, samples)
 
 
 def may_describe_motion_errors(
-    candidates: Candidates, rms: float, rms_without: float, samples: Samples
+    candidates: Candidates,
+    added: Collection[str],
+    rms: float,
+    rms_without: float,
+    samples: Samples,
 ) -> bool:
-    """Whether an effect that distorts the force may describe errors of the motion only.
+    """Whether added effects that distort the force may describe errors of the motion only.
 
     Such an effect filters the predicted force, and with it the errors of the motion. The whitening
-    assumes unfiltered errors, and the likelihood of the effect may be too large. An effect that
-    explained exactly these errors would leave the mean square without their share. This share is at
-    least `max_effect_share`, since the errors of time stamps, loads and corners of the motion are
-    not in the likelihood. False for a bearing, whose errors of the motion are not estimated.
+    assumes unfiltered errors, and the likelihood of the effect may be too large. The effect must
+    reduce the mean square by more than the share of these errors. One that filters in time must
+    reduce it by at least `min_filter_share`, since errors of time stamps, loads and corners of the
+    motion are not in the likelihood. False for a bearing: a diagnosis does not estimate the errors
+    of its motion.
 
     Parameters
     ----------
     candidates
         Fits to the campaign.
+    added
+        Names of the effects.
     rms, rms_without
         RMS of the residuals with and without the effect, N.
     samples
@@ -113,9 +122,12 @@ def may_describe_motion_errors(
     """
     if candidates.campaign.rig.bearing is not None:
         return False
-    motion, share = samples.motion, candidates.policy.motion.max_effect_share
+    motion, filters = samples.motion, FILTERS_FORCE.intersection(added)
+    share = candidates.policy.motion.min_filter_share if filters else 0.0
     if motion is not None:
         share = max(share, motion.variance_share(samples.weight))
+    elif not filters:
+        return False
     return rms**2 > (1.0 - share) * rms_without**2
 
 

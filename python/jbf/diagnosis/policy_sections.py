@@ -272,9 +272,15 @@ class Motion:
     max_effect_share: float = documented(
         0.015,
         "share of the mean square that an effect or a better law must explain where the errors of "
-        "the motion have a larger share of the variance, and that an effect that distorts the "
-        "force must always explain without a bearing",
+        "the motion have a larger share of the variance",
         "false effects explained less in most simulated servo drives (seeds 4938 to 5012)",
+    )
+    min_filter_share: float = documented(
+        0.015,
+        "smallest share of the mean square that an effect that filters the force in time must "
+        "explain; not for a bearing",
+        "the value of max_effect_share; a lag that smooths the noise of a recorded load explains "
+        "less",
     )
 
 

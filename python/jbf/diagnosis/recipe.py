@@ -253,7 +253,7 @@ def _with_law(
     with_motion_errors = with_errors_of_motion(candidates)
     if with_motion_errors is not None:
         candidates = candidates.with_campaign(with_motion_errors)
-        # They are not estimated again for the start model, which has no superfluous terms.
+        # They were estimated with all machine terms, and are not estimated again without these.
         candidates.fitted(start_model(candidates)).proposals[MOTION] = None
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign

@@ -120,7 +120,7 @@ class _Selection:
         Models that were tested, or reviewed, with the present observation model. The selection does
         not return to them.
     updates
-        Number of changes of the observation model.
+        Number of changes of the observation model that were tried.
     """
 
     def __init__(self, candidates: Candidates) -> None:
@@ -198,7 +198,8 @@ class _Selection:
             elif self._may_update:
                 update = re_estimated  # the leader is `time_delay`: its delay is corrected
         if update is not None:
-            return self._update_terms(update, add_more=False)
+            self._update_terms(update, add_more=False)
+            return True
         return self._extend(_with_leader(self.candidates, self.present, trial_round))
 
     def _add_terms(self) -> bool:
@@ -211,8 +212,9 @@ class _Selection:
     def _update_terms(self, update: Update | None, *, add_more: bool) -> bool:
         """Change the observation model; with `add_more`, until no further term is accepted.
 
-        An effect in place of errors of the motion may be unnecessary with the errors estimated
-        again. It is then refused together with these errors. Returns whether the model changed.
+        An update may add an effect in place of errors of the motion. If this effect is not needed
+        with the new errors, the update is discarded, and not proposed again for this model. Returns
+        whether an update was applied.
         """
         before, changed = self.present, False
         while update is not None:

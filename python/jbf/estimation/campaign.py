@@ -48,6 +48,11 @@ These effects can describe errors of the motion, and must explain more than thes
 acceleration is too small at its peaks, where the force is largest, as for a curved characteristic
 of the sensor.
 """
+FILTERS_FORCE = DISTORTS_FORCE - {"sensor_nonlinearity"}
+"""Effects that filter the force or the motion in time.
+
+They can also describe errors of time stamps, and smooth the noise of a recorded load.
+"""
 NEEDS_RECORDED_FORCE = DISTORTS_FORCE | {"inertia", "sensor_drift"}
 """Effects that are not tried without a recorded force.
 

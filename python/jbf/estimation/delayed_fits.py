@@ -1,6 +1,6 @@
 """Generalised least-squares fits with a given or an estimated delay of the force.
 
-A drive's force may be recorded with a delay common to all runs, or on the clock of either channel
+A force may be recorded with a delay common to all runs, or on the clock of either channel
 of the motion. The errors of the motion are estimated with each delay.
 """
 
@@ -32,17 +32,16 @@ SETTLED = 0.01
 """Change of the prediction, relative to the noise, at which the iteration stops."""
 EVALUATIONS = 20
 """Evaluations of each fit."""
-DELAY_STEP = 0.02
+DELAY_TOLERANCE = 0.02
 """Tolerance of a delay of the force, in sampling intervals."""
 SETTLED_DELAY = 0.2
-"""Tolerance of a delay of the force, in standard errors, if this is larger."""
-MAX_DELAY_STEPS = 12
-"""Largest number of steps of the search for a delay."""
-FARTHEST = 2.0
+"""Tolerance of a delay of the force, in its standard errors; the larger tolerance is used."""
+MAX_DELAY_ITERATIONS = 12
+"""Largest number of Gauss-Newton iterations of the search for a delay."""
+MAX_DELAY_CHANGE = 2.0
 """Largest difference of a delay from the start of its search, in sampling intervals."""
 DELAY_SPAN = 0.1
-"""Half-width of the central difference of the sum of squares with respect to the delay. It is in
-sampling intervals."""
+"""Half-width of the central difference with respect to the delay, in sampling intervals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +217,7 @@ def _fits_at_same_readings(
 
     A few more readings are dropped at each end, for a search from the result.
     """
-    beyond_s = (FARTHEST + 1.0) * _shortest_step_s(first)
+    beyond_s = (MAX_DELAY_CHANGE + 1.0) * _shortest_step_s(first)
     margin_s = float(np.max(np.abs(delays_s))) + beyond_s
     readings = first.with_campaign(corrected_for_delay(first.campaign, 0.0, margin_s))
     fits = in_parallel(
@@ -243,27 +242,31 @@ def _fixed_point_delay(start: DelayedFit) -> tuple[float, float]:
     crosses a corner of the motion.
 
     The Gauss-Newton method starts at the delay of the fit `start`, and estimates the covariance
-    again after each step. A step that reverses the direction of the last one is halved. The
-    standard error is infinite if the delay does not converge within two sampling intervals.
+    again after each change. A change is at most half a sampling interval, and is halved if it
+    reverses the direction of the last one. If the delay does not converge, or if the residuals do
+    not depend on it, the standard error is infinite.
     """
     step_s = _shortest_step_s(start.first)
     delay_s, reference, last_s = start.delay_s, start, 0.0
-    for _ in range(MAX_DELAY_STEPS):
-        change_s, sd_s = _delay_step(reference, delay_s, DELAY_SPAN * step_s)
+    for _ in range(MAX_DELAY_ITERATIONS):
+        change_s, sd_s = _gauss_newton_change(reference, delay_s, DELAY_SPAN * step_s)
+        settled = abs(change_s) < max(DELAY_TOLERANCE * step_s, SETTLED_DELAY * sd_s)
         change_s = float(np.clip(change_s, -0.5 * step_s, 0.5 * step_s))
         if change_s * last_s < 0.0:
             change_s *= 0.5
         delay_s, last_s = delay_s + change_s, change_s
-        if abs(delay_s - start.delay_s) > FARTHEST * step_s:
+        if abs(delay_s - start.delay_s) > MAX_DELAY_CHANGE * step_s:
             break
-        if abs(change_s) < max(DELAY_STEP * step_s, SETTLED_DELAY * sd_s):
+        if settled:
             return delay_s, sd_s
         reference = fit_with_delay(start.first, start.solution, delay_s, rounds=1)
     return start.delay_s, np.inf
 
 
-def _delay_step(reference: DelayedFit, delay_s: float, span_s: float) -> tuple[float, float]:
-    """Gauss-Newton step from a delay of the force, and the standard error of the delay, s.
+def _gauss_newton_change(
+    reference: DelayedFit, delay_s: float, span_s: float
+) -> tuple[float, float]:
+    """Gauss-Newton change of a delay of the force, and the standard error of the delay, s.
 
     Covariance and weights are those of the reference fit. The residuals are differentiated by a
     central difference of half-width `span_s`, at the samples that both delays use. The other
@@ -278,9 +281,12 @@ def _delay_step(reference: DelayedFit, delay_s: float, span_s: float) -> tuple[f
         [np.all(c, axis=0) for c in zip(*(f.samples.counted for f in fits), strict=True)]
     )
     whitening = motion.whitening([w * c for w, c in zip(used.weight, used.counted, strict=True)])
-    (r, j), (after, j_after) = (whitening.stacked(f.residuals, f.jacobian) for f in fits)
-    slope = 0.25 * (unexplained_square(j_after, after) - unexplained_square(j, r))
-    curvature = unexplained_square(0.5 * (j + j_after), 0.5 * (after - r))
+    (before, j_before), (after, j_after) = (
+        whitening.stacked(fit.residuals, fit.jacobian) for fit in fits
+    )
+    # Half of the gradient of the sum of squares, and its curvature, in units of `span_s`.
+    slope = 0.25 * (unexplained_square(j_after, after) - unexplained_square(j_before, before))
+    curvature = unexplained_square(0.5 * (j_before + j_after), 0.5 * (after - before))
     if curvature <= 0.0:
         return 0.0, np.inf
     return -slope / curvature * span_s, span_s * motion.noise / curvature**0.5

@@ -11,9 +11,9 @@ This error is the standard error of the speed divided by the acceleration. The p
 is the change of the reading during the error of the time. It reduces the weights of the samples in
 a fit. Tests exclude samples for which it is a large part of the noise.
 
-The force of a drive at rest is unknown and may change at any time. If an effect spreads a jump, the
-readings after a rest contain this force. They are excluded while the largest force of the run,
-decreasing with the time constant of the effect, is a large part of the noise.
+Without a bearing, the force at rest is unknown and may change at any time. If an effect spreads a
+jump, the readings after a rest contain this force. They are excluded while the largest force of the
+run, decreasing with the time constant of the effect, is a large part of the noise.
 
 A film, the age of a contact, a contact that deflects, and a load cell with backlash have an unknown
 state at the start of a run. The influence of this state (initial-state transient) decays as the
@@ -169,7 +169,7 @@ def after_rests(p: Prepared, spread_s: float, least_n: float) -> Mask:
     """Mask, shape (n,), of the samples that contain the unknown force at a rest.
 
     The largest force of the run, decreasing from the end of the rest with the time constant
-    `spread_s`, is above `least_n` at these samples.
+    `spread_s`, is above `least_n` at these samples. None for a bearing.
     """
     resting, time_s = p.motion.resting, p.run.time_s
     if p.rig.bearing is not None or not np.any(resting):

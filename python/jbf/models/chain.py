@@ -90,14 +90,18 @@ def check_rig(rig: Rig, law: str) -> None:
 
 def default_law(rig: Rig) -> str:
     """Law of a fit if none is named: `journal` for a bearing, otherwise `coulomb`."""
-    the_rig(rig)
-    return "coulomb" if rig.bearing is None else "journal"
+    return "journal" if _describes_bearing(rig) else "coulomb"
 
 
 def default_law_of_diagnosis(rig: Rig) -> str:
     """Law of a diagnosis if none is named: `journal` for a bearing, otherwise `auto`."""
+    return "journal" if _describes_bearing(rig) else AUTO
+
+
+def _describes_bearing(rig: Rig) -> bool:
+    """Whether a rig has a bearing or a lubricant; `check_rig` requires both for the journal law."""
     the_rig(rig)
-    return AUTO if rig.bearing is None else "journal"
+    return rig.bearing is not None or rig.lubricant is not None
 
 
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:

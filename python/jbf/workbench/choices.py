@@ -17,7 +17,7 @@ from jbf.reporting.effect_words import summary_of
 def first_law(rig: Rig) -> str:
     """Initial base law for a rig.
 
-    That of a diagnosis; `stribeck` for a bearing with incomplete data.
+    The default law of a diagnosis, or `stribeck` if the data of a bearing are incomplete.
     """
     if rig.bearing is None:
         return AUTO

@@ -301,3 +301,17 @@ def test_load_parameter_is_the_same_with_a_recorded_pressure() -> None:
 def test_effect_of_slides_and_joints_is_rejected_for_a_bearing(name: str) -> None:
     error = input_error(Model, Rig.thesis(), effects=[name])
     assert name in str(error)
+
+
+def test_filter_that_smooths_the_noise_of_a_recorded_load_is_not_named() -> None:
+    """The noise of the load causes 2 % of the mean square residual, and a filter halves it."""
+    runs = []
+    for k in range(4):
+        random, t = np.random.default_rng(k), 0.005 * np.arange(4000)
+        v = 0.1 * np.sin((1.0 + 0.5 * k) * t)
+        load = 100.0 * 2.0**k + 20.0 * np.sin(0.7 * t + k)
+        force = (5.0 + 0.5 * load) * np.sign(v) + 60.0 * v + random.normal(size=4000)
+        read = load + 0.3 * random.normal(size=4000)
+        runs.append(Run.from_arrays(t, v, force, load_n=read, name=f"run{k}"))
+    found = diagnose(Rig(), runs, law="coulomb")
+    assert (found.verdict, found.effects) == ("missing", ("dry_load_dependence",))

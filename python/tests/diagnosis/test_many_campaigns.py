@@ -10,9 +10,10 @@ from typing import Any
 import jbf
 import numpy as np
 import pytest
-from jbf import Diagnosis, InputError, Rig, diagnose_many
+from jbf import Diagnosis, InputError, Lubricant, Rig, diagnose_many
 from jbf.cli import main
 from jbf.errors import JbfError
+from jbf.models.chain import default_law_of_diagnosis
 from linear_campaigns import linear_diagnosis, linear_runs
 
 SLIDE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
@@ -113,6 +114,18 @@ def test_campaign_that_is_not_a_pair_of_rig_and_runs_is_an_error() -> None:
     wrong: Any = {"a": (Rig(), [], [])}
     assert isinstance(diagnose_many(wrong, law="coulomb")["a"], InputError)
     assert diagnose_many({}, law="auto") == {}
+
+
+def test_law_of_each_campaign_is_by_default_that_of_its_kind_of_rig() -> None:
+    rigs = {"slide": Rig(), "bearing": Rig.thesis(), "incomplete": Rig(lubricant=Lubricant(0.1))}
+    assert {name: default_law_of_diagnosis(rig) for name, rig in rigs.items()} == {
+        "slide": "auto",
+        "bearing": "journal",
+        "incomplete": "journal",
+    }
+    incomplete = diagnose_many({"a": (rigs["incomplete"], linear_runs("mass"))}, law=None)["a"]
+    assert isinstance(incomplete, InputError)
+    assert "[bearing]" in str(incomplete)
 
 
 def test_pickled_diagnosis_has_the_same_predictions_and_summary() -> None:

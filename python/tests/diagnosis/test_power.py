@@ -308,11 +308,24 @@ def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None
     )
 
 
+def test_only_filters_must_change_the_friction_by_a_minimum_share_of_the_noise() -> None:
+    candidates, limits = swings(), []
+    for share in (DEFAULT.motion.min_filter_share, 0.0):
+        candidates.policy = DEFAULT.with_values({"motion.min_filter_share": share})
+        limits.append({found.effect: found.share_80 for found in power(candidates, ())})
+    friction = np.concatenate([p.friction for p in candidates.campaign.prepared])
+    least = np.sqrt(DEFAULT.motion.min_filter_share) * 0.05 / np.sqrt(np.mean(friction**2))
+    for name in ("sensor_lag", "time_delay"):
+        assert limits[0][name] > max(limits[1][name], least)
+    assert limits[0]["sensor_offset"] == limits[1]["sensor_offset"]
+
+
 @pytest.mark.parametrize("velocity_noise", [0.0, 1e-3])
 def test_delay_and_lag_are_confounded_if_reversals_are_uncertain(velocity_noise: float) -> None:
     """With an exact velocity the two effects differ only within a sample of 20 ms."""
-    names = ["time_delay", "sensor_lag"]
-    found: dict[str, Any] = {p.effect: p for p in power(swings(velocity_noise), ())}
+    names, candidates = ["time_delay", "sensor_lag"], swings(velocity_noise)
+    candidates.policy = DEFAULT.with_values({"motion.min_filter_share": 0.0})
+    found: dict[str, Any] = {p.effect: p for p in power(candidates, ())}
     for name, other in (names, names[::-1]):
         own = found[name]
         if velocity_noise:

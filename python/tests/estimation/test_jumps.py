@@ -262,6 +262,10 @@ def test_force_at_rest_is_forgotten_with_the_time_constant_of_the_sensor(rig: Ri
     assert not after_rests(prepared([1.0, 1.0, 1.0], rig=rig), STEP_S, 1e-9).any()
 
 
+def test_force_at_rest_of_a_bearing_is_not_excluded() -> None:
+    assert not after_rests(prepared([0.0, 1.0, 1.0], rig=Rig.thesis()), STEP_S, 1e-9).any()
+
+
 def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:
     two = prepared([0.2, -0.2])
     assert timing_errors(two, np.array([1.0, -1.0]), 0.0).tolist() == [0.0, 0.0]

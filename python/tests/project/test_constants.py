@@ -47,7 +47,7 @@ NUMERICAL = {
         diagnosis.terms.shifts: SETTLED
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
-        estimation.delayed_fits: SETTLED DELAY_STEP SETTLED_DELAY
+        estimation.delayed_fits: SETTLED DELAY_TOLERANCE SETTLED_DELAY
         estimation.held_out: SHORT STRAIGHT NOTHING
         estimation.identifiability: SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
@@ -67,7 +67,7 @@ NUMERICAL = {
         estimation.parallel_fits: MOST_AT_ONCE MAX_PARALLEL_SAMPLES
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
-        estimation.delayed_fits: ROUNDS EVALUATIONS MAX_DELAY_STEPS
+        estimation.delayed_fits: ROUNDS EVALUATIONS MAX_DELAY_ITERATIONS
         estimation.held_out: EVALUATIONS
         estimation.least_squares: MOST_HELD SEARCHED LEAST_RUNS GROUP BLOCK
         estimation.approach: TRIAL_EVALUATIONS FOLLOWED KEPT LOOKED
@@ -102,7 +102,7 @@ NUMERICAL = {
     "range of a search, wider than any plausible result": """
         diagnosis.power.detection_limits: EXPONENTS
         estimation.delay_scan: REACH LEAST_REACH_STEPS
-        estimation.delayed_fits: FARTHEST
+        estimation.delayed_fits: MAX_DELAY_CHANGE
         estimation.generalised_least_squares: LEAST_INTENSITY
         estimation.posterior_motions: LEAST_NOISE MOST_NOISE MOST_SCALE RATIOS
         estimation.quantisation: MOST_NOISE

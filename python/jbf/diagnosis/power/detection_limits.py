@@ -21,6 +21,7 @@ from jbf.diagnosis.power.distinction import (
     distinguishable_size,
 )
 from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
+from jbf.estimation.campaign import FILTERS_FORCE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 
 LEVELS = (0.80, 0.95)
@@ -131,7 +132,7 @@ class _Detectable:
     def of(cls, candidates: Candidates, runs: PresentRuns, model: Strength) -> _Detectable:
         """Compute the detectable strengths of an effect in the present runs."""
         parameters = max(len(model.problem.open) - runs.base.free, 1)
-        price = candidates.price(parameters)
+        price = _threshold(candidates, runs, model.name, parameters)
         discounts = runs.discounts(runs.unexplained(runs.change(model, 1.0))[:, 0])
         least = [non_centrality(price, parameters, p, discounts) for p in LEVELS]
         times = _required_multiples(runs, model, least)
@@ -154,6 +155,18 @@ class _Detectable:
     def parameter_value(self, times: float) -> float | None:
         """Strength parameter at a multiple of the typical strength; None if not finite."""
         return float(self.model.values(times)[self.model.which]) if np.isfinite(times) else None
+
+
+def _threshold(candidates: Candidates, runs: PresentRuns, name: str, parameters: int) -> float:
+    """Gain that an effect must exceed, in twice the log likelihood.
+
+    An effect that filters the force in time must also explain a minimum share of the mean square.
+    """
+    price = candidates.price(parameters)
+    if name in FILTERS_FORCE and candidates.campaign.rig.bearing is None:
+        independent = candidates.independent_share(runs.base) * runs.base.samples.count
+        price = max(price, candidates.policy.motion.min_filter_share * independent)
+    return price
 
 
 def _finite_or_one(times: float) -> float:

@@ -133,7 +133,11 @@ def _effect_instead_of_errors(candidates: Candidates, present: Names) -> Proposa
             models = [_model(candidates, (*rest, name), present) for name in sorted(names)]
             proposal = errors_of_motion(min(models, key=_rms_without_correction))
         if proposal is not None and may_describe_motion_errors(
-            candidates, proposal.solution.rms, full.solution.rms, proposal.campaign.samples
+            candidates,
+            set(proposal.problem.effects) - set(rest),
+            proposal.solution.rms,
+            full.solution.rms,
+            proposal.campaign.samples,
         ):
             proposal = None
         fitted.proposals[INSTEAD_OF_ERRORS] = proposal

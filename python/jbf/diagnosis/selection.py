@@ -34,7 +34,7 @@ LESS = 0.95
 """Ratio of RMS values, with to without a candidate, from which the ledger reports a better fit."""
 CHANCE = "no significant gain"
 SLIGHT = "significant, but within the margin for recording artefacts"
-OF_MOTION_ERRORS = "explains no more than errors of the motion or of time stamps could"
+OF_MOTION_ERRORS = "explains no more than errors of the acceleration or of time stamps could"
 OF_SMOOTHING = "not significant with a motion that is smoothed less"
 SMOOTH = "fits better, but the residual is so strongly correlated that this may be chance"
 

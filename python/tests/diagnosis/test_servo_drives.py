@@ -172,7 +172,7 @@ def test_fit_with_the_hidden_effect_is_likelier_than_the_nested_fit_without_it()
 
 
 def test_verdict_is_unexplained_if_the_friction_level_differs_by_stroke() -> None:
-    found = jbf.diagnose(*first_halves(4045, ("stroke_scatter",)), law="coulomb")
+    found = diagnosed(4045, ("stroke_scatter",))
     assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
 
 

@@ -154,11 +154,11 @@ def _with_corners_located_by_forces(first: Problem, end: DelayedFit) -> DelayedF
     """Locate corners (abrupt changes of acceleration) of the motion by the forces, and refit.
 
     The force of a drive is continuous at a reversal, and the acceleration jumps by the change of
-    the friction divided by the mass. The force of a hand, or of a load cell that
-    measures the friction, may jump instead. The motions with and
-    without these jumps are both fitted. The likeliest of these fits and `end` is returned
-    (`likeliest`). Corners and jumps depend on the parameters. They are located again with those of
-    each new fit, at most `ROUNDS` times, while twice the log likelihood increases by more than
+    the friction divided by the mass. The force of a hand, or of a load cell that measures the
+    friction, may jump instead. The motions with and without these jumps are both fitted. The
+    likeliest of these fits and `end` is returned (`likeliest`). Corners and jumps depend on the
+    parameters. They are located again with those of each new fit, at most `ROUNDS` times, while
+    twice the log likelihood increases by more than
     `min_smoothness_gain`. `first` is the problem before the correction of a delay.
     """
     motion = end.solution.samples.motion

@@ -6,7 +6,7 @@ from typing import Any
 
 from jbf.errors import InputError
 from jbf.models.catalogue import effects, find_effect, laws, reason_not_applicable
-from jbf.models.chain import check_rig
+from jbf.models.chain import check_rig, default_law_of_diagnosis
 from jbf.models.vocabulary import AUTO
 from jbf.records.quantities import BEARING
 from jbf.records.rig import Rig
@@ -19,13 +19,14 @@ def first_law(rig: Rig) -> str:
 
     The default law of a diagnosis, or `stribeck` if the data of a bearing are incomplete.
     """
-    if rig.bearing is None:
-        return AUTO
+    law = default_law_of_diagnosis(rig)
+    if law == AUTO:
+        return law
     try:
-        check_rig(rig, "journal")
+        check_rig(rig, law)
     except InputError:
         return "stribeck"
-    return "journal"
+    return law
 
 
 def laws_for(rig: Rig | None) -> list[dict[str, Any]]:

@@ -547,6 +547,9 @@ def test_contribution_of_an_effect_uses_the_starting_values_of_these_runs(fitted
     campaign = Campaign.prepare(bench.rig, bench.runs)
     problem = Problem(campaign, "journal", "journal", ["stribeck_excess"])
     starts = dict(zip(problem.names, problem.starts({})[0].tolist(), strict=True))
+    # After other tests, the model is compared again once it is shown.
+    fitted.show(1)
+    wait_until(lambda: fitted.typical_values(1))
     values = fitted.typical_values(1)
     assert values is not None
     added = {name: v for name, v in starts.items() if name.startswith("stribeck_excess.")}

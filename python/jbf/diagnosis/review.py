@@ -21,7 +21,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.estimation.approach import many_peaks
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.generalised_least_squares import with_motion_errors
+from jbf.estimation.generalised_least_squares import likeliest_with_motion_errors
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_removed
@@ -76,7 +76,7 @@ def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
         return None
     terms = machine_terms(candidates)
     problem, solution = candidates.fitted(terms).problem, candidates.converge(terms)
-    problem, solution = with_motion_errors(problem, solution)
+    problem, solution = likeliest_with_motion_errors(problem, solution)
     if solution.samples.motion is None:
         return None
     campaign = problem.campaign
@@ -101,18 +101,19 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 
     If another effect is missing, the residual may be so correlated that no effect has evidence. An
     effect is needed even then if independent units confirm it, or if the held-out error is larger
-    without it.
+    without it: much larger if the likelihood is not, since large estimated errors of the motion can
+    make a worse fit likelier.
     """
-    full = candidates.converge(current)
+    full, policy = candidates.converge(current), candidates.policy
     if evidence(candidates, full, simpler) >= 0.0:
         return True
-    if full_gain(candidates, full, simpler) <= 0.0:
-        return False
     rest = tuple(e for e in current if e != name)
-    if candidates.confirmation(rest, name).units_confirm(candidates.level):
-        return True
-    least = candidates.policy.held_out.no_worse_ratio * candidates.held_out_rms(current)
-    return candidates.held_out_rms(rest) > least
+    least_ratio = policy.selection.max_rms_ratio
+    if full_gain(candidates, full, simpler) > 0.0:
+        if candidates.confirmation(rest, name).units_confirm(candidates.level):
+            return True
+        least_ratio = policy.held_out.no_worse_ratio
+    return candidates.held_out_rms(rest) > least_ratio * candidates.held_out_rms(current)
 
 
 def reconsider(

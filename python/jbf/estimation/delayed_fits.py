@@ -147,9 +147,10 @@ def _delays_at_minima_s(problem: Problem, solution: Solution) -> list[float]:
     """Delays at the smallest local minima of the sum of squares, s; at most `max_delay_minima`.
 
     The delays are half a sampling interval apart, and the sum has the same readings for all of
-    them. The other parameters are fitted in linear approximation: prediction and Jacobian are
-    interpolated at the delayed instants. If the sampling is uniform, these are a quarter of an
-    interval from a sample, so that the interpolation smooths all of them equally.
+    them. The ends of the range are not minima, since the sum may decrease beyond them. The other
+    parameters are fitted in linear approximation: prediction and Jacobian are interpolated at the
+    delayed instants. If the sampling is uniform, these are a quarter of an interval from a sample,
+    so that the interpolation smooths all of them equally.
     """
     settings, step_s = problem.campaign.settings, _shortest_step_s(problem)
     near, runs = near_solution(problem, solution), problem.campaign.prepared
@@ -180,7 +181,7 @@ def _delays_at_minima_s(problem: Problem, solution: Solution) -> list[float]:
     count = int(longest_s / (0.5 * step_s))
     delays_s = step_s * (0.5 * np.arange(-count, count) + 0.25)
     squares = np.array([square(float(delay_s)) for delay_s in delays_s])
-    around = np.pad(squares, 1, constant_values=np.inf)
+    around = np.pad(squares, 1, constant_values=-np.inf)
     minima = np.flatnonzero((squares <= around[:-2]) & (squares < around[2:]))
     smallest = minima[np.argsort(squares[minima])][: settings.motion.max_delay_minima]
     return [float(delays_s[k]) for k in smallest]

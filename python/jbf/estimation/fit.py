@@ -15,7 +15,7 @@ from jbf.estimation.bounds import bounded_pages, checked_bounds
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delay_scan import exact_delay
 from jbf.estimation.estimates import Estimates
-from jbf.estimation.generalised_least_squares import with_motion_errors
+from jbf.estimation.generalised_least_squares import likeliest_with_motion_errors
 from jbf.estimation.identifiability import correlations, parameter_values, reset_unidentified
 from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.minimum import best_weighting, minimum, not_above_nested
@@ -244,30 +244,6 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     )
 
 
-def _from_all_starts(
-    problem: Problem, solution: Solution, given: Mapping[str, float]
-) -> tuple[Problem, Solution]:
-    """Search from all starting values with the errors of the motion; return the likelier fit.
-
-    Where these errors are large, ordinary least squares may end near another maximum.
-    """
-    motion = solution.samples.motion
-    if motion is None:
-        return problem, solution
-    samples = replace(problem.campaign.samples, motion=replace(motion, by_delay=None))
-    campaign = replace(problem.campaign, samples=samples)
-    whitened = Problem(
-        campaign, problem.law, problem.clock, problem.effects, problem.fixed, problem.bounds
-    )
-    other = not_above_nested(whitened, minimum(whitened, [given]))
-    if other.cost >= samples.cost(solution.residuals, other.noise):
-        return problem, solution
-    near = problem.solution(other.values, problem.samples_at(other.values), WHITE)
-    again = with_motion_errors(problem, near)
-    likelier = log_likelihood(again[1]) > log_likelihood(solution)
-    return again if likelier else (problem, solution)
-
-
 @one_blas_thread
 def fit(
     rig: Rig,
@@ -361,8 +337,7 @@ def fit(
     check_film_rate(campaign, law, clock, {**given, **problem.fixed})
     try:
         solution = not_above_nested(problem, minimum(problem, [given]))
-        problem, solution = with_motion_errors(problem, solution)
-        problem, solution = _from_all_starts(problem, solution, given)
+        problem, solution = likeliest_with_motion_errors(problem, solution, given)
         solution = best_weighting(problem, solution)
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.lift()

@@ -7,6 +7,7 @@ estimated jointly with the model.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -22,8 +23,14 @@ from jbf.estimation.delayed_fits import (
     likeliest,
     near_solution,
 )
-from jbf.estimation.likelihood import likelihood_gain
-from jbf.estimation.minimum import MAX_EVALUATIONS, polish, settle
+from jbf.estimation.likelihood import likelihood_gain, log_likelihood
+from jbf.estimation.minimum import (
+    MAX_EVALUATIONS,
+    minimum,
+    not_above_nested,
+    polish,
+    settle,
+)
 from jbf.estimation.noise import WHITE
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import (
@@ -44,6 +51,34 @@ INTENSITY_STEP = 3.0
 """Factor on the noise intensity between two motions whose likelihoods are compared."""
 LEAST_INTENSITY = 1e-4
 """Smallest factor on the intensity, and the reciprocal of the largest."""
+
+
+def likeliest_with_motion_errors(
+    problem: Problem, solution: Solution, given: Mapping[str, float] | None = None
+) -> tuple[Problem, Solution]:
+    """Fit with the errors of the motion from an ordinary fit and from all starting values.
+
+    Where these errors are large, ordinary least squares may end near another maximum of the
+    likelihood. If a search from all starting values and those `given`, with the estimated errors,
+    ends at a likelier fit, the errors are estimated again near it, and the likelier of the two
+    results is returned. See `with_motion_errors`.
+    """
+    problem, solution = with_motion_errors(problem, solution)
+    motion = solution.samples.motion
+    if motion is None:
+        return problem, solution
+    samples = replace(problem.campaign.samples, motion=replace(motion, by_delay=None))
+    campaign = replace(problem.campaign, samples=samples)
+    whitened = Problem(
+        campaign, problem.law, problem.clock, problem.effects, problem.fixed, problem.bounds
+    )
+    other = not_above_nested(whitened, minimum(whitened, [given or {}]))
+    if other.cost >= samples.cost(solution.residuals, other.noise):
+        return problem, solution
+    near = problem.solution(other.values, problem.samples_at(other.values), WHITE)
+    again = with_motion_errors(problem, near)
+    likelier = log_likelihood(again[1]) > log_likelihood(solution)
+    return again if likelier else (problem, solution)
 
 
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:

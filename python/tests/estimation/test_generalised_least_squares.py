@@ -71,6 +71,12 @@ def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) 
         assert found.parameters[name].value == pytest.approx(true, rel=0.02)
 
 
+def test_delay_beyond_the_searched_range_of_16_samples_is_not_corrected() -> None:
+    runs = [drive(seed, -16.2 * STEP_S) for seed in (21, 22)]
+    found = fit(Rig(), runs, ["inertia"], law="coulomb")
+    assert "late_channel" not in [finding.kind for finding in found.findings]
+
+
 def moves_from_rest(delay_s: float, step_s: float) -> Run:
     """Point-to-point moves with abrupt accelerations; the force is a command without noise."""
     fine = 1e-4 * np.arange(80_000)

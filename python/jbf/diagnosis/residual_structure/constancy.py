@@ -161,7 +161,8 @@ def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Ar
 def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
     """Test whether parameters differ between runs; empty if they do not differ significantly."""
     test = disagreement(problem, solution, policy=policy)
-    if not test.beyond_chance(policy):
+    share = min((test.gain - test.degrees) / solution.samples.count, 1.0)
+    if share < policy.patterns.min_share or not test.beyond_chance(policy):
         return []
     first, *others = list(test.by_run)[:NAMED]
     others = [name for name in others if test.by_run[name] > policy.constancy.min_ratio]
@@ -173,7 +174,6 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
     )
     if others:
         where += f" (next: {', '.join(others)})"
-    share = min((test.gain - test.degrees) / solution.samples.count, 1.0)
     return [Remainder("parameters", where, share)]
 
 

@@ -92,6 +92,7 @@ class EffectPage(TypedDict):
     longest_step_s: float
     further_of: str | None
     unknown_start: bool
+    initial_transient: bool
     rust_type: str
     parameters: list[ParameterPage]
 

@@ -137,11 +137,12 @@ pub struct ParameterTreatment {
 /// Treatment of an effect in a fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EffectTreatment {
-    /// True if neither the first sample of a run nor the passage of time determines the initial
-    /// state.
-    ///
-    /// Only a reversal of its input erases the influence of such an initial state.
+    /// True if the initial state depends on the motion before the run, and only a reversal of the
+    /// input erases its influence.
     pub unknown_start: bool,
+    /// True if the initial state depends on the motion before the run, and sliding erases its
+    /// influence.
+    pub initial_transient: bool,
     /// True if a parameter changes the instants at which friction jumps.
     ///
     /// A fit must then exclude the samples next to such a jump.
@@ -302,6 +303,10 @@ pub fn effect(name: &str) -> EffectTreatment {
         },
         "backlash" | "time_delay" => EffectTreatment {
             moves_jumps: true,
+            ..usual
+        },
+        "dwell_stiction" | "presliding" => EffectTreatment {
+            initial_transient: true,
             ..usual
         },
         "sensor_hysteresis" => EffectTreatment {

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from jbf.arrays import Array
+from jbf.arrays import Array, Mask
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.review import MACHINE_TERMS, with_errors_of_motion
@@ -196,7 +196,7 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
     samples = solution.samples
     if find_law(problem.law).has_bristle:
-        samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
+        samples = _with_starts(samples, [p.directed for p in problem.campaign.prepared])
     every = [np.zeros(len(c)) for c in samples.counted]
     for part in candidates.held_out_within_range(effects):
         for i, held_out, residual in zip(part.runs, part.masks, part.residuals, strict=True):
@@ -211,10 +211,10 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
     return HeldOut(errors, white, static_below_kinetic)
 
 
-def _with_starts(samples: Samples, every: Samples) -> Samples:
+def _with_starts(samples: Samples, every: Sequence[Mask]) -> Samples:
     """Add to a selection the samples of `every` before the first selected sample of each run."""
     counted = []
-    for selected, other in zip(samples.counted, every.counted, strict=True):
+    for selected, other in zip(samples.counted, every, strict=True):
         start = int(np.argmax(selected)) if selected.any() else 0
         counted.append(selected | (other & (np.arange(len(selected)) < start)))
     weight = [np.where(w > 0.0, w, c) for w, c in zip(samples.weight, counted, strict=True)]

@@ -301,7 +301,9 @@ class Campaign:
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """Return the campaign without the samples that are True in the masks, one mask per run."""
-        return replace(self, samples=self.samples.within([~m for m in masks]))
+        prepared = tuple(p.without(m) for p, m in zip(self.prepared, masks, strict=True))
+        samples = self.samples.within([~m for m in masks])
+        return replace(self, prepared=prepared, samples=samples)
 
     def only(self, selection: Sequence[int]) -> Campaign:
         """Return the campaign restricted to the runs with these indices."""

@@ -25,9 +25,16 @@ from jbf.estimation.posterior_motions import delay_of_further_runs_s
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import doubtful_errors, standard_errors
-from jbf.estimation.transients import check_film_rate
+from jbf.estimation.transients import check_film_rate, without_transients
+from jbf.estimation.uncertain_samples import has_initial_transient
 from jbf.estimation.work import TimeLimit
-from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
+from jbf.models.catalogue import (
+    check_applies,
+    find_effect,
+    find_law,
+    in_chain_order,
+    parameters_of,
+)
 from jbf.models.chain import check_rig, default_law
 from jbf.models.delayed_reading import TAU
 from jbf.models.model import Model
@@ -260,8 +267,8 @@ def fit(
 ) -> Fit:
     """Fit a base law, with named effects, to recorded runs by least squares.
 
-    The squares are summed over all samples at which the sign of the motion is known. The
-    derivatives are exact.
+    The squares are summed over all samples at which the sign of the motion is known, except those
+    that depend on an unknown initial deflection of a contact. The derivatives are exact.
 
     Parameters
     ----------
@@ -335,6 +342,9 @@ def fit(
     problem = Problem(campaign, law, clock, chosen, named_values(fixed, pages), limits)
     given = named_values(start, pages)
     check_film_rate(campaign, law, clock, {**given, **problem.fixed})
+    if find_law(law).has_bristle or has_initial_transient(chosen):
+        campaign = without_transients(campaign, law, clock, chosen)
+        problem = problem.with_campaign(campaign)
     try:
         solution = not_above_nested(problem, minimum(problem, [given]))
         problem, solution = likeliest_with_motion_errors(problem, solution, given)

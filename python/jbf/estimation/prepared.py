@@ -74,6 +74,8 @@ class Prepared:
     examined: Examined
     recorded: tuple[Array, EstimatedMotion] | None = None
     """Times of the recorded motion, s, and the motion there, if the force has other times."""
+    excluded: Mask | None = None
+    """Samples that depend on an unrecorded state of the model, shape (n,); None without any."""
 
     @property
     def converter_step_n(self) -> float:
@@ -218,6 +220,7 @@ class Prepared:
         kept = (read >= instants[0] + margin_s) & (read <= instants[-1] - margin_s)
         run = self.run.select(kept).at(read[kept], self.readings_n[kept])
         usable = self.examined.usable[kept]
+        excluded = None if self.excluded is None else self.excluded[kept]
         assert run.friction is not None
         return replace(
             self,
@@ -226,7 +229,17 @@ class Prepared:
             friction=run.friction,
             examined=replace(self.examined, usable=usable),
             recorded=(instants, motion),
+            excluded=excluded,
         )
+
+    def without(self, mask: Mask) -> Prepared:
+        """Return the run without the samples of a mask, shape (n,), also after a shift."""
+        return replace(self, excluded=mask if self.excluded is None else self.excluded | mask)
+
+    @property
+    def directed(self) -> Mask:
+        """Mask of the samples with a known direction of sliding and a usable reading."""
+        return self.motion.slides & self.examined.usable
 
     @cached_property
     def core(self) -> Driven:

@@ -66,9 +66,14 @@ class Samples:
 
     @classmethod
     def of(cls, prepared: Iterable[Prepared], settings: Settings = DEFAULT) -> Samples:
-        """Select the samples with a known direction of sliding and a usable reading."""
+        """Select the samples with a known direction of sliding and a usable reading.
+
+        Those that depend on an unrecorded state (`Prepared.excluded`) are not selected.
+        """
         prepared = tuple(prepared)
-        counted = tuple(p.motion.slides & p.examined.usable for p in prepared)
+        counted = tuple(
+            p.directed if p.excluded is None else p.directed & ~p.excluded for p in prepared
+        )
         return cls(
             tuple(p.run.name for p in prepared),
             tuple(p.step_s for p in prepared),

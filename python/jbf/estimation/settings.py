@@ -157,10 +157,16 @@ class TransientSettings:
         "share of a run above which nothing is excluded for a contact",
         "a run may be a single stroke, half of which deflects the contact",
     )
-    max_share_backlash: float = documented(
+    max_share_effect: float = documented(
         0.5,
-        "share of a campaign above which nothing is excluded for a load cell with backlash",
+        "share of a campaign above which nothing is excluded for an effect",
         "a run whose force never reverses is excluded, unless most runs are such",
+    )
+    max_share_sliding: float = documented(
+        0.2,
+        "share of a run above which nothing is excluded for an effect whose initial state sliding "
+        "erases",
+        "a model must predict short runs, such as cycles, from the start",
     )
     before_s: float = documented(
         6.0, "duration of the simulated motions before a run, s", "convention"
@@ -171,9 +177,9 @@ class TransientSettings:
         "a film at rest, a thin one, and the thickest one",
     )
     contact_speeds: tuple[float, ...] = documented(
-        (-1.0, 1.0),
+        (-1.0, 0.0, 1.0),
         "speeds of these motions for contacts and backlash, as fractions of the top speed",
-        "either side",
+        "either side, and a rest",
     )
     film_margin: float = documented(
         1.5, "factor on the excluded duration for a film", "the film may be slower than the model's"

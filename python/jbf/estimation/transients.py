@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
-from jbf.arrays import Array, Mask
+from jbf.arrays import Array, Mask, Names
 from jbf.errors import InputError
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
@@ -25,7 +25,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.estimation.uncertain_samples import has_unknown_start, initial_memory
+from jbf.estimation.uncertain_samples import initial_memory
 from jbf.models.catalogue import find_effect, find_law
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
@@ -34,6 +34,13 @@ from jbf.records.findings.finding import Finding
 
 EDGE = 1e-3
 """Fraction of a gap within which a simulated motion changes its speed."""
+UNSETTLED = "was not at its initial state"
+STATES = {
+    "presliding": "contact was deflected differently",
+    "dwell_stiction": "contact had rested for an unknown time",
+    "sensor_hysteresis": f"load cell's hysteresis {UNSETTLED}",
+}
+"""Text on the unknown state of an effect at the start of a run."""
 RANKING_EVALUATIONS = 8
 """Evaluations of a fit that is accurate enough to estimate the rate of the film."""
 
@@ -119,18 +126,20 @@ def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, at_end: bool) -> Driven
     return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(instants, time))
 
 
-def without_transients(campaign: Campaign, law: str, clock: Clock) -> Campaign:
-    """Return the campaign without the initial-state transients, estimated with the base law.
+def without_transients(campaign: Campaign, law: str, clock: Clock, effects: Names = ()) -> Campaign:
+    """Return the campaign without the initial-state transients of a law with effects.
+
+    They are estimated with an approximate fit.
 
     Raises
     ------
     InputError
         A film is too fast for these records.
     """
-    if initial_memory(law, ()) is None:
+    if initial_memory(law, effects) is None:
         return campaign
     check_film_rate(campaign, law, clock)
-    problem = Problem(campaign, law, clock, ())
+    problem = Problem(campaign, law, clock, effects)
     near = approach(problem, [[{}]], RANKING_EVALUATIONS)
     return _without_unrecorded(problem, near.values, near.residuals)
 
@@ -143,7 +152,11 @@ def without_further_transients(problem: Problem, solution: Solution) -> Campaign
     of further samples is excluded.
     """
     pages = [find_effect(name) for name in problem.effects]
-    lasting = [page.name for page in pages if page.stage == "film" or page.unknown_start]
+    lasting = [
+        page.name
+        for page in pages
+        if page.stage == "film" or page.unknown_start or page.initial_transient
+    ]
     if not lasting or initial_memory(problem.law, lasting) is None:
         return None
     campaign = problem.campaign
@@ -171,15 +184,15 @@ def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Arr
 
 
 def _state(law: str, effects: Iterable[str]) -> str:
-    """Text that names the state of a law and its effects that is unknown at the start of a run."""
-    page, cell = find_law(law), "load cell's hysteresis"
-    if page.has_bristle and not page.has_film:
-        return "contact was deflected differently"
+    """Text that states what is unknown of a law and its effects at the start of a run."""
+    page = find_law(law)
+    states = []
     if page.has_film:
-        state = f"film or the {cell}" if has_unknown_start(effects) else "film"
-    else:
-        state = "contact" if page.has_memory else cell
-    return f"{state} was not at its initial state"
+        states.append(f"film {UNSETTLED}")
+    elif page.has_memory:
+        states.append(STATES["presliding"] if page.has_bristle else f"contact {UNSETTLED}")
+    states += [STATES[name] for name in effects if name in STATES]
+    return " or the ".join(dict.fromkeys(states))
 
 
 def _findings(

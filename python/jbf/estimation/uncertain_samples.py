@@ -33,7 +33,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, JumpSettings, TransientSettings
 from jbf.models.catalogue import Parameter, find_effect, find_law
-from jbf.models.chain import core_motion
+from jbf.models.chain import MotionBefore, core_motion
 from jbf.models.driven import DrivenChain
 
 MOST = 0.29
@@ -202,15 +202,15 @@ class Memory:
 
     Attributes
     ----------
-    speeds
-        Speeds of motions before a run that lead to different states, as fractions of its top speed.
+    motions
+        Motions before a run that lead to different states.
     margin
         Factor on the duration of the difference, for the excluded duration.
     max_run_share, max_campaign_share
         Largest excluded fraction of a run, and of a campaign.
     """
 
-    speeds: tuple[float, ...]
+    motions: tuple[MotionBefore, ...]
     margin: float
     max_run_share: float
     max_campaign_share: float = 1.0
@@ -220,20 +220,31 @@ def initial_memory(
     law: str, effects: Iterable[str], settings: TransientSettings = DEFAULT.transient
 ) -> Memory | None:
     """Return the transient settings for a law with effects; None if they have no initial state."""
-    page, s = find_law(law), settings
-    by_speed = page.has_memory and not page.has_bristle
+    page, s, effects = find_law(law), settings, tuple(effects)
+    film = tuple(MotionBefore(share, s.before_s) for share in s.film_speeds)
+    # The duration of a rest at the start of a run is unknown as well.
+    contact = tuple(
+        MotionBefore(share, s.before_s, replaces_rest=share != 0.0) for share in s.contact_speeds
+    )
+    motions = film if page.has_memory and not page.has_bristle else ()
     if has_unknown_start(effects):
         # The initial state of a film determines the side of the backlash on which the load cell is.
-        speeds = (*(s.film_speeds if by_speed else ()), *s.contact_speeds)
-        return Memory(speeds, s.contact_margin, np.inf, s.max_share_backlash)
+        return Memory((*motions, *contact), s.contact_margin, np.inf, s.max_share_effect)
     if page.has_bristle:
-        return Memory(s.contact_speeds, s.contact_margin, s.max_share_contact)
-    return Memory(s.film_speeds, s.film_margin, s.max_share_film) if by_speed else None
+        return Memory(contact, s.contact_margin, s.max_share_contact)
+    if has_initial_transient(effects):
+        return Memory((*motions, *contact), s.contact_margin, s.max_share_sliding)
+    return Memory(motions, s.film_margin, s.max_share_film) if motions else None
 
 
 def has_unknown_start(effects: Iterable[str]) -> bool:
-    """Whether at least one of the effects has an unknown initial state."""
+    """Whether a reversal is needed to erase the initial state of at least one of the effects."""
     return any(find_effect(name).unknown_start for name in effects)
+
+
+def has_initial_transient(effects: Iterable[str]) -> bool:
+    """Whether sliding erases an unknown initial state of at least one of the effects."""
+    return any(find_effect(name).initial_transient for name in effects)
 
 
 def transient_masks(
@@ -251,10 +262,8 @@ def transient_masks(
     """
     # The motion used by the fit has starts between samples and would differ at each stop.
     predictions = []
-    for share in memory.speeds:
-        motions = [
-            core_motion(p.rig, p.run, p.motion, (share, settings.before_s)) for p in prepared
-        ]
+    for before in memory.motions:
+        motions = [core_motion(p.rig, p.run, p.motion, before) for p in prepared]
         predictions.append(chain.predict(values, motions))
     spreads = [np.ptp(np.array(by_speed), axis=0) for by_speed in zip(*predictions, strict=True)]
     masks = [
@@ -269,11 +278,11 @@ def transient_masks(
 
 def _transient_mask(p: Prepared, differs: Mask, memory: Memory) -> Mask:
     """Mask of the first interval in which two simulations differ, extended by a margin."""
-    index = np.flatnonzero(differs)
+    # Samples at rest do not depend on the initial state.
+    index = np.flatnonzero(differs & ~p.motion.resting)
     if not len(index):
         return np.zeros(len(differs), dtype=bool)
     time = p.run.time_s
     until = time[index[0]] + memory.margin * (time[index[-1]] - time[index[0]])
-    # Samples before the motion (a rest) do not depend on the initial state.
     mask: Mask = (time >= time[index[0]]) & (time <= until)
     return mask if mask.mean() < memory.max_run_share else np.zeros(len(differs), dtype=bool)

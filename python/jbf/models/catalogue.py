@@ -119,8 +119,11 @@ class Effect:
     further_of
         Effect of which this one is an additional instance; None for most effects.
     unknown_start
-        True if the first sample does not determine the initial state, whose influence does not
-        decay.
+        True if the initial state depends on the motion before the run, and only a reversal of the
+        input erases its influence.
+    initial_transient
+        True if the initial state depends on the motion before the run, and sliding erases its
+        influence.
     rust_type
         Rust type of the effect in the core; empty for a user-defined effect.
     columns
@@ -143,6 +146,7 @@ class Effect:
     columns: tuple[str, ...] = ()
     further_of: str | None = None
     unknown_start: bool = False
+    initial_transient: bool = False
     rust_type: str = ""
 
     def __repr__(self) -> str:

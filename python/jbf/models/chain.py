@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -199,8 +200,27 @@ def sampled_motion(
     return (run.time_s if motion.clock_s is None else motion.clock_s), motion
 
 
+@dataclass(frozen=True)
+class MotionBefore:
+    """Hypothetical motion at a constant speed before a run.
+
+    Attributes
+    ----------
+    speed_share
+        Speed in the direction of the first motion, as a fraction of the run's largest speed.
+    duration_s
+        Duration, s.
+    replaces_rest
+        Whether the motion continues through a rest at the start of the run.
+    """
+
+    speed_share: float
+    duration_s: float
+    replaces_rest: bool = False
+
+
 def core_motion(
-    rig: Rig, run: Run, motion: EstimatedMotion, before: tuple[float, float] | None = None
+    rig: Rig, run: Run, motion: EstimatedMotion, before: MotionBefore | None = None
 ) -> Driven:
     """Convert motion and load of a run to an input of the core.
 
@@ -209,8 +229,7 @@ def core_motion(
     Parameters
     ----------
     before
-        Speed and duration (s) of a hypothetical motion before the run. The speed is constant, in
-        the direction of the first motion, as a fraction of the largest speed of the run.
+        Hypothetical motion before the run; None without one.
     """
     recorded = recorded_load(rig, run)
     if recorded is not None:
@@ -232,7 +251,7 @@ def core_motion(
         columns["weight_offset_rad"] = offset
     run_samples = None
     if before is not None:
-        count, columns = _with_motion_before(columns, rig, *before)
+        count, columns = _with_motion_before(columns, rig, before)
         run_samples = count + np.arange(len(run))
     with core_refusals("correct the run"):
         core = _core.Motion(
@@ -259,15 +278,19 @@ def _from_rest(run: Run, velocity: Array) -> Array:
 
 
 def _with_motion_before(
-    columns: dict[str, Array], rig: Rig, share: float, duration_s: float
+    columns: dict[str, Array], rig: Rig, motion: MotionBefore
 ) -> tuple[int, dict[str, Array]]:
     """Prepend a hypothetical motion to columns; return its number of samples and the columns."""
     speed, time = columns["velocity"], columns["time_s"]
     step_s = float(np.median(np.diff(time)))
-    count = int(duration_s / step_s)
+    count = int(motion.duration_s / step_s)
     moving = np.flatnonzero(speed)
     direction = float(np.sign(speed[moving[0]])) if len(moving) else 1.0
-    velocity = direction * share * float(np.max(np.abs(speed), initial=0.0))
+    velocity = direction * motion.speed_share * float(np.max(np.abs(speed), initial=0.0))
+    if motion.replaces_rest and len(moving):
+        columns = columns | {
+            "velocity": np.append(np.full(moving[0], velocity), speed[moving[0] :])
+        }
     arm = 1.0 if rig.bearing is None else rig.bearing.radius_m
     before_s = -step_s * np.arange(count, 0, -1)
     before = {name: np.full(count, values[0]) for name, values in columns.items()}

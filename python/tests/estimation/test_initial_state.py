@@ -25,7 +25,7 @@ from jbf.estimation.transients import (
     without_transients,
 )
 from jbf.estimation.uncertain_samples import Memory, initial_memory, transient_masks
-from jbf.models.chain import core_motion
+from jbf.models.chain import MotionBefore, core_motion
 
 NOISE_N = 0.05
 SLOW, FAST = (1e-3, 6.0), (1.0, 6.0)
@@ -55,7 +55,11 @@ def after(run: Run, before: tuple[float, float] | None, seed: int = 0) -> Run:
     """The friction of the bearing after another motion (None: after the model's own start)."""
     problem, values = journal_problem(run)
     p = problem.campaign.prepared[0]
-    motion = p.core if before is None else core_motion(p.rig, p.run, p.motion, before)
+    motion = (
+        p.core
+        if before is None
+        else core_motion(p.rig, p.run, p.motion, before and MotionBefore(*before))
+    )
     (force,) = problem.chain.predict(values, [motion])
     noise = NOISE_N * np.random.default_rng(seed).standard_normal(len(run))
     return replace(run, friction=force + noise)
@@ -80,6 +84,8 @@ def two_starts() -> Campaign:
         ("journal", (), False),
         ("journal", ("sensor_offset",), False),
         ("lugre", (), True),
+        ("coulomb", ("presliding",), True),
+        ("journal", ("dwell_stiction",), True),
         ("coulomb", PLAY, True),
         ("journal", PLAY, True),
     ],
@@ -93,7 +99,7 @@ def test_models_with_a_film_contact_or_backlash_have_an_initial_state_memory(
         assert memory is None
         return
     assert memory is not None
-    assert (min(memory.speeds) < 0.0) == directions
+    assert (min(motion.speed_share for motion in memory.motions) < 0.0) == directions
     assert memory.margin > 1.0
 
 
@@ -101,8 +107,8 @@ def test_models_with_a_film_contact_or_backlash_have_an_initial_state_memory(
 def test_interval_in_which_initial_states_matter_is_excluded_and_extended(margin: float) -> None:
     problem, values = journal_problem(journal_run("a", 2.0))
     (p,) = problem.campaign.prepared
-    memory = Memory((1e-3, 0.1, 1.0), margin, 0.5)
-    starts = [core_motion(p.rig, p.run, p.motion, (s, 6.0)) for s in memory.speeds]
+    memory = Memory(tuple(MotionBefore(share, 6.0) for share in (1e-3, 0.1, 1.0)), margin, 0.5)
+    starts = [core_motion(p.rig, p.run, p.motion, before) for before in memory.motions]
     forces = [problem.chain.predict(values, [motion])[0] for motion in starts]
     apart = np.flatnonzero(
         np.ptp(np.array(forces), axis=0) > SETTINGS.transient.max_difference * NOISE_N

@@ -18,7 +18,6 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
-from jbf.estimation.transients import without_transients
 from jbf.models.delayed_reading import DELAY, TAU
 
 EVALUATIONS = 12
@@ -68,21 +67,17 @@ def possible_clocks(problem: Problem, delays_s: Array, drift: float) -> bool:
 
 
 def moved(problem: Problem, delays_s: Array, drift: float) -> Campaign:
-    """Shift the force of each run to earlier times, by its delay and the clock drift.
-
-    The initial-state transients of the shifted runs are excluded again.
-    """
+    """Shift the force of each run to earlier times, by its delay and the clock drift."""
     old = problem.campaign
     prepared = tuple(
         p.shifted(late, drift) for p, late in zip(old.prepared, delays_s.tolist(), strict=True)
     )
-    shifted = replace(
+    return replace(
         old,
         prepared=prepared,
         samples=Samples.of(prepared, old.settings),
-        more_findings=tuple(f for f in old.more_findings if f.done == "left out"),
+        more_findings=tuple(f for f in old.more_findings if f.done in ("left out", "excluded")),
     )
-    return without_transients(shifted, problem.law, problem.clock)
 
 
 def without_delay(effects: Names) -> Names:

@@ -6,7 +6,7 @@ from point_to_point import FORCE_NOISE_N, TRUTH, point_to_point
 
 
 def test_holding_force_between_moves_causes_neither_an_effect_nor_residual_structure() -> None:
-    runs = point_to_point([6, 7], duration_s=12.0)
+    runs = point_to_point([6, 7], duration_s=8.0)
     found = diagnose(Rig(), runs, law="coulomb")
     assert (found.verdict, found.effects) == ("missing", ("inertia",)), found.summary()
     assert not found.residual_structure
@@ -22,7 +22,7 @@ def test_lag_of_the_load_cell_is_not_attributed_to_the_motion(seeds: tuple[int, 
     """A low-pass filter of six samples; without it, the errors of the acceleration seem large."""
     runs = [
         Run.from_arrays(run.time_s, None, run.friction, position_m=run.position_m, name=run.name)
-        for run in point_to_point(seeds, duration_s=8.0, lag_s=0.012)
+        for run in point_to_point(seeds, duration_s=6.0, lag_s=0.012)
     ]
     found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
     assert found.effects == ("sensor_lag",), found.summary()

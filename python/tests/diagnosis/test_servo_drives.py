@@ -66,7 +66,12 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = ()) -> jbf.Diagnosis:
         pytest.param(4816, {"inertia"}, id="point to point, command without noise", marks=EXTENDED),
         pytest.param(4828, {"inertia"}, id="steps, 97 Hz, position alone", marks=EXTENDED),
         pytest.param(4851, {"inertia"}, id="point to point, force late by 0.71 samples"),
-        pytest.param(4860, {"inertia", "gravity"}, id="exponential starts, smoothing bias"),
+        pytest.param(
+            4860,
+            {"inertia", "gravity"},
+            id="exponential starts, smoothing bias",
+            marks=EXTENDED,
+        ),
         pytest.param(
             5143,
             {"inertia", "gravity"},
@@ -115,7 +120,7 @@ def test_only_inertia_and_the_hidden_effect_are_named_without_a_drive(
     [
         pytest.param(4049, "cogging", marks=EXTENDED),
         pytest.param(4045, "viscous_thinning", marks=EXTENDED),
-        (4315, "torque_proportional"),
+        pytest.param(4315, "torque_proportional", marks=EXTENDED),
         # Large errors of the motion explain a late force, and are likelier than the delay.
         # A default test below asserts the same of this diagnosis.
         pytest.param(4925, "pitch_ripple", marks=EXTENDED),
@@ -163,6 +168,7 @@ def test_fit_of_a_drive_finds_the_simulated_parameters_from_all_starting_values(
         assert abs(fitted[name].value - value) < 3.0 * (fitted[name].stderr or 0.0)
 
 
+@EXTENDED
 def test_fit_with_the_hidden_effect_is_likelier_than_the_nested_fit_without_it() -> None:
     """Jumps of the acceleration are located again after the friction has increased."""
     rig, runs = first_halves(5131, ("viscous_thinning",))

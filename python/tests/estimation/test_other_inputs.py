@@ -215,7 +215,7 @@ def test_steady_states_are_not_cut_at_rests_or_cycles(tmp_path: Path) -> None:
 
 
 def test_backlash_is_not_tried_in_a_diagnosis_of_a_free_swing(tmp_path: Path) -> None:
-    files = swings(tmp_path, [1.5, -1.2], seed=22)
+    files = swings(tmp_path, [1.5], seed=22)
     found = import_files(files, coast_map())
     result = diagnose(found.rig, found.runs, law="coulomb")
     assert "backlash" in result.not_tried

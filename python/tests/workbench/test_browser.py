@@ -192,7 +192,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
     """Two records of a slide with 12 N of Coulomb friction and a mass, in ms and mm."""
     folder = tmp_path / "bench"
     folder.mkdir()
-    t = np.arange(0.0, 30.0, 0.02)
+    t = np.arange(0.0, 15.0, 0.02)
     for number, (stroke_m, period_s) in enumerate(((0.06, 8.0), (0.03, 3.0))):
         w = 2.0 * np.pi / period_s
         x, v = stroke_m * np.sin(w * t), stroke_m * w * np.cos(w * t)
@@ -203,7 +203,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
     with served(folder) as address, examine_runs(address) as (page, messages):
         logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
         page.set_input_files("input[type=file]", logs)
-        page.wait_for_selector("text=log1: 1500 samples")
+        page.wait_for_selector("text=log1: 750 samples")
         click(page, "columns")
         # A different unit changes the numbers and can be undone.
         force = page.locator("tr:has([data-key='is-Force [N]']) td.n")
@@ -231,7 +231,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         used.click()
         page.wait_for_selector("#runs >> text=trimmed")
         page.wait_for_function(
-            "() => Math.abs(document.querySelector('[data-key=trim-n-0]').value - 3.0) < 0.01",
+            "() => Math.abs(document.querySelector('[data-key=trim-n-0]').value - 1.5) < 0.01",
             timeout=10_000,
         )
         used.click()

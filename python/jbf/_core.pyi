@@ -92,7 +92,7 @@ class EffectPage(TypedDict):
     longest_step_s: float
     further_of: str | None
     unknown_start: bool
-    initial_transient: bool
+    erased_by_sliding: bool
     rust_type: str
     parameters: list[ParameterPage]
 

@@ -142,7 +142,7 @@ pub struct EffectTreatment {
     pub unknown_start: bool,
     /// True if the initial state depends on the motion before the run, and sliding erases its
     /// influence.
-    pub initial_transient: bool,
+    pub erased_by_sliding: bool,
     /// True if a parameter changes the instants at which friction jumps.
     ///
     /// A fit must then exclude the samples next to such a jump.
@@ -306,7 +306,7 @@ pub fn effect(name: &str) -> EffectTreatment {
             ..usual
         },
         "dwell_stiction" | "presliding" => EffectTreatment {
-            initial_transient: true,
+            erased_by_sliding: true,
             ..usual
         },
         "sensor_hysteresis" => EffectTreatment {

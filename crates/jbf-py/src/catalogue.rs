@@ -58,7 +58,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("further_of", info.further_of)?;
         d.set_item("unknown_start", fit.unknown_start)?;
-        d.set_item("initial_transient", fit.initial_transient)?;
+        d.set_item("erased_by_sliding", fit.erased_by_sliding)?;
         d.set_item("rust_type", info.rust_type)?;
         d.set_item("parameters", parameters(py, info.name, info.parameters)?)?;
         out.append(d)?;

@@ -101,14 +101,14 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 
     If another effect is missing, the residual may be so correlated that no effect has evidence. An
     effect is needed even then if independent units confirm it, or if the held-out error is larger
-    without it: much larger if the likelihood is not, since large estimated errors of the motion can
-    make a worse fit likelier.
+    without it. For an effect that does not increase the likelihood, the ratio must exceed
+    `max_rms_ratio`, since large estimated errors of the motion can make a worse fit likelier.
     """
     full, policy = candidates.converge(current), candidates.policy
     if evidence(candidates, full, simpler) >= 0.0:
         return True
     rest = tuple(e for e in current if e != name)
-    least_ratio = policy.selection.max_rms_ratio
+    least_ratio = candidates.campaign.settings.motion.max_rms_ratio
     if full_gain(candidates, full, simpler) > 0.0:
         if candidates.confirmation(rest, name).units_confirm(candidates.level):
             return True

@@ -22,7 +22,7 @@ from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.samples import Samples
 from jbf.estimation.transients import check_film_rate, without_transients
-from jbf.estimation.uncertain_samples import initial_memory
+from jbf.estimation.uncertain_samples import initial_memories
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock
@@ -108,7 +108,7 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
         except InputError as error:
             refused[f"law {name}"] = error.problem
             continue
-        if campaign.steady and initial_memory(name, ()) is not None:
+        if campaign.steady and initial_memories(name, ()):
             refused[f"law {name}"] = "steady states do not show its memory"
             continue
         resolved.append(name)
@@ -169,7 +169,7 @@ def laws_to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
     replaces an earlier one only if it predicts better by a margin (`diagnose`).
     """
     selected = laws[0]
-    memoryless = [t for t in laws if initial_memory(t.law, ()) is None]
+    memoryless = [t for t in laws if not initial_memories(t.law, ())]
     names = [selected.law]
     if find_law(selected.law).has_bristle:
         names = [*(t.law for t in memoryless[:1]), selected.law]
@@ -196,7 +196,7 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
     samples = solution.samples
     if find_law(problem.law).has_bristle:
-        samples = _with_starts(samples, [p.directed for p in problem.campaign.prepared])
+        samples = _with_starts(samples, [p.selectable for p in problem.campaign.prepared])
     every = [np.zeros(len(c)) for c in samples.counted]
     for part in candidates.held_out_within_range(effects):
         for i, held_out, residual in zip(part.runs, part.masks, part.residuals, strict=True):

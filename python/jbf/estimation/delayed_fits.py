@@ -147,7 +147,7 @@ def _delays_at_minima_s(problem: Problem, solution: Solution) -> list[float]:
     """Delays at the smallest local minima of the sum of squares, s; at most `max_delay_minima`.
 
     The delays are half a sampling interval apart, and the sum has the same readings for all of
-    them. The ends of the range are not minima, since the sum may decrease beyond them. The other
+    them. The ends of the range are not counted, since the sum may decrease beyond them. The other
     parameters are fitted in linear approximation: prediction and Jacobian are interpolated at the
     delayed instants. If the sampling is uniform, these are a quarter of an interval from a sample,
     so that the interpolation smooths all of them equally.

@@ -25,8 +25,8 @@ from jbf.estimation.posterior_motions import delay_of_further_runs_s
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import doubtful_errors, standard_errors
-from jbf.estimation.transients import check_film_rate, without_transients
-from jbf.estimation.uncertain_samples import has_initial_transient
+from jbf.estimation.transients import check_film_rate, without_further_transients
+from jbf.estimation.uncertain_samples import has_state_erased_by_sliding
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import (
     check_applies,
@@ -251,6 +251,21 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     )
 
 
+def _without_initial_states(
+    problem: Problem, solution: Solution, given: Mapping[str, float]
+) -> tuple[Problem, Solution]:
+    """Fit again without the samples that depend on an unknown initial state of a contact."""
+    if not (find_law(problem.law).has_bristle or has_state_erased_by_sliding(problem.effects)):
+        return problem, solution
+    settled = without_further_transients(problem, solution)
+    if settled is None:
+        return problem, solution
+    problem = problem.with_campaign(settled)
+    known = {**problem.values_by_name(solution.values), **given}
+    again = not_above_nested(problem, minimum(problem, [known]))
+    return likeliest_with_motion_errors(problem, again, given)
+
+
 @one_blas_thread
 def fit(
     rig: Rig,
@@ -268,7 +283,8 @@ def fit(
     """Fit a base law, with named effects, to recorded runs by least squares.
 
     The squares are summed over all samples at which the sign of the motion is known, except those
-    that depend on an unknown initial deflection of a contact. The derivatives are exact.
+    at the start of a run that depend on an unrecorded state of a contact, if these are few. The
+    derivatives are exact.
 
     Parameters
     ----------
@@ -342,12 +358,10 @@ def fit(
     problem = Problem(campaign, law, clock, chosen, named_values(fixed, pages), limits)
     given = named_values(start, pages)
     check_film_rate(campaign, law, clock, {**given, **problem.fixed})
-    if find_law(law).has_bristle or has_initial_transient(chosen):
-        campaign = without_transients(campaign, law, clock, chosen)
-        problem = problem.with_campaign(campaign)
     try:
         solution = not_above_nested(problem, minimum(problem, [given]))
         problem, solution = likeliest_with_motion_errors(problem, solution, given)
+        problem, solution = _without_initial_states(problem, solution, given)
         solution = best_weighting(problem, solution)
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.lift()

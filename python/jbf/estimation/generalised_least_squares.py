@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from jbf.errors import Unfinished
 from jbf.estimation.approach import approach
 from jbf.estimation.delayed_fits import (
     EVALUATIONS,
@@ -56,12 +57,13 @@ LEAST_INTENSITY = 1e-4
 def likeliest_with_motion_errors(
     problem: Problem, solution: Solution, given: Mapping[str, float] | None = None
 ) -> tuple[Problem, Solution]:
-    """Fit with the errors of the motion from an ordinary fit and from all starting values.
+    """Fit with errors of the motion, starting from an ordinary fit and from all starting values.
 
     Where these errors are large, ordinary least squares may end near another maximum of the
     likelihood. If a search from all starting values and those `given`, with the estimated errors,
     ends at a likelier fit, the errors are estimated again near it, and the likelier of the two
-    results is returned. See `with_motion_errors`.
+    results is returned. If the time ends during this search, the first result is returned. See
+    `with_motion_errors`.
     """
     problem, solution = with_motion_errors(problem, solution)
     motion = solution.samples.motion
@@ -72,11 +74,14 @@ def likeliest_with_motion_errors(
     whitened = Problem(
         campaign, problem.law, problem.clock, problem.effects, problem.fixed, problem.bounds
     )
-    other = not_above_nested(whitened, minimum(whitened, [given or {}]))
-    if other.cost >= samples.cost(solution.residuals, other.noise):
+    try:
+        other = not_above_nested(whitened, minimum(whitened, [given or {}]))
+        if other.cost >= samples.cost(solution.residuals, other.noise):
+            return problem, solution
+        near = problem.solution(other.values, problem.samples_at(other.values), WHITE)
+        again = with_motion_errors(problem, near)
+    except Unfinished:
         return problem, solution
-    near = problem.solution(other.values, problem.samples_at(other.values), WHITE)
-    again = with_motion_errors(problem, near)
     likelier = log_likelihood(again[1]) > log_likelihood(solution)
     return again if likelier else (problem, solution)
 

@@ -75,7 +75,7 @@ class Prepared:
     recorded: tuple[Array, EstimatedMotion] | None = None
     """Times of the recorded motion, s, and the motion there, if the force has other times."""
     excluded: Mask | None = None
-    """Samples that depend on an unrecorded state of the model, shape (n,); None without any."""
+    """Samples excluded because they depend on an unrecorded state, shape (n,); None if none."""
 
     @property
     def converter_step_n(self) -> float:
@@ -220,7 +220,10 @@ class Prepared:
         kept = (read >= instants[0] + margin_s) & (read <= instants[-1] - margin_s)
         run = self.run.select(kept).at(read[kept], self.readings_n[kept])
         usable = self.examined.usable[kept]
-        excluded = None if self.excluded is None else self.excluded[kept]
+        excluded = self.excluded
+        if excluded is not None:
+            # The state belongs to the motion, whose time is that of the shifted readings.
+            excluded = np.interp(read[kept], time, excluded.astype(float)) > 0.0
         assert run.friction is not None
         return replace(
             self,
@@ -233,11 +236,11 @@ class Prepared:
         )
 
     def without(self, mask: Mask) -> Prepared:
-        """Return the run without the samples of a mask, shape (n,), also after a shift."""
+        """Exclude the samples of a mask, shape (n,). They remain excluded after a shift."""
         return replace(self, excluded=mask if self.excluded is None else self.excluded | mask)
 
     @property
-    def directed(self) -> Mask:
+    def selectable(self) -> Mask:
         """Mask of the samples with a known direction of sliding and a usable reading."""
         return self.motion.slides & self.examined.usable
 

@@ -26,7 +26,7 @@ from jbf.estimation.starting_values import with_starts
 from jbf.estimation.uncertain_samples import (
     active_effects,
     has_unknown_start,
-    initial_memory,
+    initial_memories,
     moves_jumps,
     samples_near_jumps,
     spreads_jumps,
@@ -261,10 +261,11 @@ class Problem:
         friction, N.
         """
         prepared, settings = self.campaign.prepared, self.campaign.settings.transient
-        memory = initial_memory(self.law, self.effects, settings)
-        if memory is None:
-            return [np.zeros(len(p.run), dtype=bool) for p in prepared]
-        return transient_masks(self.chain, values, prepared, memory, noise_rms, settings)
+        masks = [np.zeros(len(p.run), dtype=bool) for p in prepared]
+        for memory in initial_memories(self.law, self.effects, settings):
+            found = transient_masks(self.chain, values, prepared, memory, noise_rms, settings)
+            masks = [mask | more for mask, more in zip(masks, found, strict=True)]
+        return masks
 
     def solution(
         self,

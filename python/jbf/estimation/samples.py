@@ -1,11 +1,12 @@
 """Selection and weights of samples for a model, by run.
 
 The likelihood, the score tests and all tests of the residual structure of a model use the same
-selection and weights. A sample is excluded in three cases. Within a few samples of a reversal, the
+selection and weights. A sample is excluded in four cases. Within a few samples of a reversal, the
 record does not determine the sign of the friction. Position and speed may contradict each other. At
 rest, friction balances the force of the drive up to the breakaway level, and a law predicts no
-value. A model may exclude more (`uncertain_samples`). A fit uses the weight of each sample; a test
-uses the included samples only (`counted`).
+value. The state of a contact or a film at the start of a run may be unknown. A model may exclude
+more (`uncertain_samples`). A fit uses the weight of each sample; a test uses the included samples
+only (`counted`).
 """
 
 from __future__ import annotations
@@ -68,11 +69,11 @@ class Samples:
     def of(cls, prepared: Iterable[Prepared], settings: Settings = DEFAULT) -> Samples:
         """Select the samples with a known direction of sliding and a usable reading.
 
-        Those that depend on an unrecorded state (`Prepared.excluded`) are not selected.
+        Samples that depend on an unrecorded state (`Prepared.excluded`) are not selected.
         """
         prepared = tuple(prepared)
         counted = tuple(
-            p.directed if p.excluded is None else p.directed & ~p.excluded for p in prepared
+            p.selectable if p.excluded is None else p.selectable & ~p.excluded for p in prepared
         )
         return cls(
             tuple(p.run.name for p in prepared),

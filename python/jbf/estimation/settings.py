@@ -154,23 +154,20 @@ class TransientSettings:
     )
     max_share_contact: float = documented(
         0.75,
-        "share of a run above which nothing is excluded for a contact",
+        "share of a run above which nothing is excluded for a law with a bristle",
         "a run may be a single stroke, half of which deflects the contact",
     )
-    max_share_effect: float = documented(
+    max_share_backlash: float = documented(
         0.5,
-        "share of a campaign above which nothing is excluded for an effect",
+        "share of a campaign above which nothing is excluded for a load cell with backlash",
         "a run whose force never reverses is excluded, unless most runs are such",
     )
     max_share_sliding: float = documented(
         0.2,
-        "share of a run above which nothing is excluded for an effect whose initial state sliding "
-        "erases",
+        "share of a run above which nothing is excluded for an effect of the contact",
         "a model must predict short runs, such as cycles, from the start",
     )
-    before_s: float = documented(
-        6.0, "duration of the simulated motions before a run, s", "convention"
-    )
+    before_s: float = documented(6.0, "duration of the motions before a run, s", "convention")
     film_speeds: tuple[float, ...] = documented(
         (1e-3, 0.1, 1.0),
         "speeds of these motions for a film, as fractions of the run's top speed",
@@ -179,7 +176,7 @@ class TransientSettings:
     contact_speeds: tuple[float, ...] = documented(
         (-1.0, 0.0, 1.0),
         "speeds of these motions for contacts and backlash, as fractions of the top speed",
-        "either side, and a rest",
+        "both directions, and a rest",
     )
     film_margin: float = documented(
         1.5, "factor on the excluded duration for a film", "the film may be slower than the model's"

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
-from jbf.arrays import Array, Mask, Names
+from jbf.arrays import Array, Mask
 from jbf.errors import InputError
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
@@ -25,7 +25,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.estimation.uncertain_samples import initial_memory
+from jbf.estimation.uncertain_samples import initial_memories
 from jbf.models.catalogue import find_effect, find_law
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
@@ -35,12 +35,15 @@ from jbf.records.findings.finding import Finding
 EDGE = 1e-3
 """Fraction of a gap within which a simulated motion changes its speed."""
 UNSETTLED = "was not at its initial state"
+"""Clause on a film, contact or load cell whose initial state is unknown."""
+DEFLECTED = "contact was deflected differently"
+"""Clause on an elastic contact whose initial state is unknown."""
 STATES = {
-    "presliding": "contact was deflected differently",
+    "presliding": DEFLECTED,
     "dwell_stiction": "contact had rested for an unknown time",
     "sensor_hysteresis": f"load cell's hysteresis {UNSETTLED}",
 }
-"""Text on the unknown state of an effect at the start of a run."""
+"""Clause on the unknown initial state of an effect, by name."""
 RANKING_EVALUATIONS = 8
 """Evaluations of a fit that is accurate enough to estimate the rate of the film."""
 
@@ -126,38 +129,38 @@ def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, at_end: bool) -> Driven
     return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(instants, time))
 
 
-def without_transients(campaign: Campaign, law: str, clock: Clock, effects: Names = ()) -> Campaign:
-    """Return the campaign without the initial-state transients of a law with effects.
-
-    They are estimated with an approximate fit.
+def without_transients(campaign: Campaign, law: str, clock: Clock) -> Campaign:
+    """Return the campaign without the initial-state transients, estimated with the base law.
 
     Raises
     ------
     InputError
         A film is too fast for these records.
     """
-    if initial_memory(law, effects) is None:
+    if not initial_memories(law, ()):
         return campaign
     check_film_rate(campaign, law, clock)
-    problem = Problem(campaign, law, clock, effects)
+    problem = Problem(campaign, law, clock, ())
     near = approach(problem, [[{}]], RANKING_EVALUATIONS)
     return _without_unrecorded(problem, near.values, near.residuals)
 
 
 def without_further_transients(problem: Problem, solution: Solution) -> Campaign | None:
-    """Return the campaign without the initial-state transients of a model with effects.
+    """Return the campaign without the initial-state transients of a fitted model.
 
     Effects may change the film or have an initial state. The base law then gives a wrong duration
-    of the transient, and more samples must be excluded. The result is None if no significant number
-    of further samples is excluded.
+    of the transient, and more samples must be excluded. That of a bristle also depends on a delay
+    of the force. The result is None if no significant number of further samples is excluded.
     """
     pages = [find_effect(name) for name in problem.effects]
     lasting = [
         page.name
         for page in pages
-        if page.stage == "film" or page.unknown_start or page.initial_transient
+        if page.stage == "film" or page.unknown_start or page.erased_by_sliding
     ]
-    if not lasting or initial_memory(problem.law, lasting) is None:
+    if not (lasting or find_law(problem.law).has_bristle):
+        return None
+    if not initial_memories(problem.law, lasting):
         return None
     campaign = problem.campaign
     nested = Problem(campaign, problem.law, problem.clock, lasting)
@@ -184,13 +187,13 @@ def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Arr
 
 
 def _state(law: str, effects: Iterable[str]) -> str:
-    """Text that states what is unknown of a law and its effects at the start of a run."""
+    """Clause on what is unknown about the initial state of a law with effects."""
     page = find_law(law)
     states = []
     if page.has_film:
         states.append(f"film {UNSETTLED}")
     elif page.has_memory:
-        states.append(STATES["presliding"] if page.has_bristle else f"contact {UNSETTLED}")
+        states.append(DEFLECTED if page.has_bristle else f"contact {UNSETTLED}")
     states += [STATES[name] for name in effects if name in STATES]
     return " or the ".join(dict.fromkeys(states))
 

@@ -17,8 +17,8 @@ run, decreasing with the time constant of the effect, is a large part of the noi
 
 A film, the age of a contact, a contact that deflects, and a load cell with backlash have an unknown
 state at the start of a run. The influence of this state (initial-state transient) decays as the
-shaft moves, or ends as the force reverses. Its duration is the time during which two simulations of
-the run from opposite initial states differ.
+shaft moves, or ends as the force reverses. Its duration is the time during which simulations of the
+run from different initial states differ.
 """
 
 from __future__ import annotations
@@ -216,25 +216,30 @@ class Memory:
     max_campaign_share: float = 1.0
 
 
-def initial_memory(
+def initial_memories(
     law: str, effects: Iterable[str], settings: TransientSettings = DEFAULT.transient
-) -> Memory | None:
-    """Return the transient settings for a law with effects; None if they have no initial state."""
+) -> list[Memory]:
+    """Return the transient settings for each kind of unknown initial state of a law with effects.
+
+    The list is empty if they have no unknown initial state.
+    """
     page, s, effects = find_law(law), settings, tuple(effects)
-    film = tuple(MotionBefore(share, s.before_s) for share in s.film_speeds)
-    # The duration of a rest at the start of a run is unknown as well.
-    contact = tuple(
+    films = tuple(MotionBefore(share, s.before_s) for share in s.film_speeds)
+    # A rest at the start of a run may be shorter or longer than recorded.
+    contacts = tuple(
         MotionBefore(share, s.before_s, replaces_rest=share != 0.0) for share in s.contact_speeds
     )
-    motions = film if page.has_memory and not page.has_bristle else ()
+    by_film = page.has_memory and not page.has_bristle
+    memories = [Memory(films, s.film_margin, s.max_share_film)] if by_film else []
+    if page.has_bristle:
+        memories.append(Memory(contacts, s.contact_margin, s.max_share_contact))
+    if has_state_erased_by_sliding(effects):
+        memories.append(Memory(contacts, s.contact_margin, s.max_share_sliding))
     if has_unknown_start(effects):
         # The initial state of a film determines the side of the backlash on which the load cell is.
-        return Memory((*motions, *contact), s.contact_margin, np.inf, s.max_share_effect)
-    if page.has_bristle:
-        return Memory(contact, s.contact_margin, s.max_share_contact)
-    if has_initial_transient(effects):
-        return Memory((*motions, *contact), s.contact_margin, s.max_share_sliding)
-    return Memory(motions, s.film_margin, s.max_share_film) if motions else None
+        motions = (*(films if by_film else ()), *contacts)
+        memories.append(Memory(motions, s.contact_margin, np.inf, s.max_share_backlash))
+    return memories
 
 
 def has_unknown_start(effects: Iterable[str]) -> bool:
@@ -242,9 +247,9 @@ def has_unknown_start(effects: Iterable[str]) -> bool:
     return any(find_effect(name).unknown_start for name in effects)
 
 
-def has_initial_transient(effects: Iterable[str]) -> bool:
+def has_state_erased_by_sliding(effects: Iterable[str]) -> bool:
     """Whether sliding erases an unknown initial state of at least one of the effects."""
-    return any(find_effect(name).initial_transient for name in effects)
+    return any(find_effect(name).erased_by_sliding for name in effects)
 
 
 def transient_masks(
@@ -277,7 +282,7 @@ def transient_masks(
 
 
 def _transient_mask(p: Prepared, differs: Mask, memory: Memory) -> Mask:
-    """Mask of the first interval in which two simulations differ, extended by a margin."""
+    """Mask from the first to the last sample at which simulations differ, with a margin."""
     # Samples at rest do not depend on the initial state.
     index = np.flatnonzero(differs & ~p.motion.resting)
     if not len(index):
@@ -285,4 +290,4 @@ def _transient_mask(p: Prepared, differs: Mask, memory: Memory) -> Mask:
     time = p.run.time_s
     until = time[index[0]] + memory.margin * (time[index[-1]] - time[index[0]])
     mask: Mask = (time >= time[index[0]]) & (time <= until)
-    return mask if mask.mean() < memory.max_run_share else np.zeros(len(differs), dtype=bool)
+    return mask if mask.mean() <= memory.max_run_share else np.zeros(len(differs), dtype=bool)

@@ -119,11 +119,9 @@ class Effect:
     further_of
         Effect of which this one is an additional instance; None for most effects.
     unknown_start
-        True if the initial state depends on the motion before the run, and only a reversal of the
-        input erases its influence.
-    initial_transient
-        True if the initial state depends on the motion before the run, and sliding erases its
-        influence.
+        Whether the initial state is unknown, and only a reversal of the input erases its influence.
+    erased_by_sliding
+        Whether the initial state is unknown, and sliding erases its influence.
     rust_type
         Rust type of the effect in the core; empty for a user-defined effect.
     columns
@@ -146,7 +144,7 @@ class Effect:
     columns: tuple[str, ...] = ()
     further_of: str | None = None
     unknown_start: bool = False
-    initial_transient: bool = False
+    erased_by_sliding: bool = False
     rust_type: str = ""
 
     def __repr__(self) -> str:

@@ -211,7 +211,7 @@ class MotionBefore:
     duration_s
         Duration, s.
     replaces_rest
-        Whether the motion continues through a rest at the start of the run.
+        Whether the motion also replaces a rest at the start of the run.
     """
 
     speed_share: float
@@ -280,7 +280,10 @@ def _from_rest(run: Run, velocity: Array) -> Array:
 def _with_motion_before(
     columns: dict[str, Array], rig: Rig, motion: MotionBefore
 ) -> tuple[int, dict[str, Array]]:
-    """Prepend a hypothetical motion to columns; return its number of samples and the columns."""
+    """Prepend a hypothetical motion to columns, which may also replace a rest at their start.
+
+    Returns the number of its samples before the run, and the columns.
+    """
     speed, time = columns["velocity"], columns["time_s"]
     step_s = float(np.median(np.diff(time)))
     count = int(motion.duration_s / step_s)

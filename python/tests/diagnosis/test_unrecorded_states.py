@@ -30,7 +30,7 @@ def deflected_run(seed: int, start_n: float, late_s: float) -> jbf.Run:
     position = sum(a * np.sin(w * fine + p) for a, w, p in zip(sizes_m, rates, phases, strict=True))
     force = bristle_force(position, start_n) + VISCOUS_N_S_M * np.gradient(position, FINE_S)
     t = np.arange(0.1, 6.9, STEP_S)
-    # The readings start with the recording: what was before is not known.
+    # The history before the first reading is not recorded.
     reading = np.interp(t - late_s, fine, force) + random.normal(0.0, 0.2, len(t))
     path = np.round(np.interp(t, fine, position) + random.normal(0.0, 1.5e-6, len(t)), 6)
     return jbf.Run.from_arrays(t, None, reading, position_m=path, name=f"run_{seed}")
@@ -50,6 +50,19 @@ def test_start_of_a_run_is_excluded_if_the_contact_was_deflected_differently(
     assert found.fit.params["F_c"] == pytest.approx(COULOMB_N, rel=0.01)
     (stiffness,) = (found.fit.params[n] for n in found.fit.params if "sigma" in n)
     assert stiffness == pytest.approx(STIFFNESS_N_M, rel=0.03)
+
+
+def test_exclusion_of_the_start_does_not_depend_on_a_delay_or_an_effect_of_long_memory() -> None:
+    late_s = (0.0, 8.0 * STEP_S)
+    punctual, late = (
+        [deflected_run(k, start, delay) for k, start in enumerate((0.0, -18.0, 18.0))]
+        for delay in late_s
+    )
+    usual = jbf.fit(jbf.Rig(), punctual, law="dahl").nobs
+    assert usual < 3900
+    assert jbf.fit(jbf.Rig(), late, law="dahl").nobs == pytest.approx(usual, abs=60)
+    with_wear = jbf.fit(jbf.Rig(), punctual, ["running_in"], law="dahl")
+    assert with_wear.nobs == pytest.approx(usual, abs=60)
 
 
 @pytest.mark.parametrize(("law", "effects"), [("dahl", ()), ("coulomb", ("presliding",))])

@@ -53,7 +53,7 @@ SHOWN = {
     "film_memory": Shown({"factor": 0.35}),
     "running_in": Shown({"a": 0.6, "s_0": 1.0}, "eight periods of 1 rad/s"),
     "dwell_stiction": Shown(
-        {"a": 0.15, "t_0": 3.0, "m": 0.7, "s_0": 3e-3}, "starts after rests of 1, 3 and 9 s"
+        {"a": 0.15, "t_0": 3.0, "m": 0.7, "s_0": 3e-3}, "starts after rests of 1, 1, 3 and 9 s"
     ),
     "stribeck_excess": Shown({"a": 0.1, "v_s": 0.012, "n": 1.5}),
     "dry_load_dependence": Shown({"mu": 0.08}),
@@ -117,7 +117,7 @@ def speed_of(motion: str) -> tuple[np.ndarray, np.ndarray]:
     """Return times (s) and surface speeds (m/s) of a motion by its name."""
     if motion.startswith("starts"):
         knots = [(0.0, 0.0)]
-        for rest in (1.0, 3.0, 9.0):
+        for rest in (1.0, 1.0, 3.0, 9.0):  # the first one may have been longer
             t = knots[-1][0] + rest
             knots += [(t, 0.0), (t + 0.5, 0.05), (t + 1.5, 0.05), (t + 2.0, 0.0)]
         time = np.arange(0.0, knots[-1][0] + 0.5, 1.0 / RATE_HZ)

@@ -75,7 +75,7 @@ def test_unknown_initial_deflection_does_not_bias_a_fit(law: str, effects: tuple
         assert abs(fitted[name].value - value) < 4.0 * (fitted[name].stderr or 0.0), fitted[name]
 
 
-GROWTH_N, GROWTH_S, GROWTH_EXPONENT, DECAY_M = 3.5, 2.0, 0.7, 6e-4
+GROWTH_N, GROWTH_S, GROWTH_EXPONENT, DECAY_M = 3.5, 5.0, 0.6, 6e-4
 
 
 def started_run(seed: int, before_s: float) -> jbf.Run:
@@ -93,7 +93,7 @@ def started_run(seed: int, before_s: float) -> jbf.Run:
         slid_m = speed * (t[moving] - begin)
         age = 1.0 - np.exp(-((rest_s / GROWTH_S) ** GROWTH_EXPONENT))
         force[moving] = 6.0 + 90.0 * speed + GROWTH_N * age * np.exp(-slid_m / DECAY_M)
-        rest_s = float(random.choice([0.3, 1.0, 3.0]))
+        rest_s = float(random.choice([0.3, 1.0, 5.0]))
         begin = end + rest_s
     reading = np.where(velocity > 0.0, force, 4.0) + random.normal(0.0, 0.1, len(t))
     return jbf.Run.from_arrays(t, velocity, reading, name=f"run_{seed}")

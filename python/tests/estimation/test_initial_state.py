@@ -14,6 +14,7 @@ from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
+from jbf.estimation.posterior_motions import corrected_for_delay
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
@@ -140,6 +141,36 @@ def test_rest_before_motion_is_not_excluded_and_shortens_the_film_transient() ->
     assert short.time_s[found[0]][0] == pytest.approx(2.0, abs=0.05)
     assert 0 < np.sum(found[1]) < np.sum(found[0])
     assert not found[2].any()
+
+
+@pytest.mark.parametrize("growth_s", [0.1, 5.0])
+def test_first_start_is_excluded_as_the_rest_before_it_may_have_been_longer(
+    growth_s: float,
+) -> None:
+    """Even if the static friction of the recorded rest of one second is constant or negligible."""
+    t = 0.01 * np.arange(2000)
+    velocity = np.where(((t > 1.0) & (t < 3.0)) | ((t > 6.0) & (t < 8.0)), 0.01, 0.0)
+    run = Run.from_arrays(t, velocity, 5.0 * np.sign(velocity))
+    problem = Problem(Campaign.prepare(Rig(), [run]), "coulomb", "journal", ("dwell_stiction",))
+    growth = {"a": 2.0, "t_0_s": growth_s, "m": 0.7, "s_0": 1e-3}
+    known = {"F_c": 5.0} | {f"dwell_stiction.{name}": value for name, value in growth.items()}
+    (mask,) = problem.transient_samples(problem.starts(known)[0], 0.1)
+    assert mask[(t > 1.05) & (t < 1.3)].all()
+    assert not mask[t > 6.0].any()
+
+
+def test_excluded_start_keeps_its_time_in_the_motion_if_the_force_is_shifted() -> None:
+    campaign = two_starts()
+    shifted = corrected_for_delay(campaign, 0.1)
+    ends = [
+        [
+            p.run.time_s[np.argmax(counted)]
+            for p, counted in zip(c.prepared, c.samples.counted, strict=True)
+        ]
+        for c in (campaign, shifted)
+    ]
+    np.testing.assert_allclose(ends[1], ends[0], atol=campaign.prepared[0].step_s)
+    assert min(ends[0]) > 0.2
 
 
 def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:

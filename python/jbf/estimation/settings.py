@@ -164,7 +164,7 @@ class TransientSettings:
     )
     max_share_sliding: float = documented(
         0.2,
-        "share of a run above which nothing is excluded for an effect of the contact",
+        "share of a run above which nothing is excluded for presliding or dwell stiction",
         "a model must predict short runs, such as cycles, from the start",
     )
     before_s: float = documented(6.0, "duration of the motions before a run, s", "convention")

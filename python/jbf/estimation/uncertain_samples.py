@@ -225,7 +225,7 @@ def initial_memories(
     """
     page, s, effects = find_law(law), settings, tuple(effects)
     films = tuple(MotionBefore(share, s.before_s) for share in s.film_speeds)
-    # A rest at the start of a run may be shorter or longer than recorded.
+    # Before its first motion, a contact may have moved, or rested for longer than recorded.
     contacts = tuple(
         MotionBefore(share, s.before_s, replaces_rest=share != 0.0) for share in s.contact_speeds
     )

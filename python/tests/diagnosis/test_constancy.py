@@ -56,6 +56,18 @@ def by_regression(residuals: Sequence[Array], design: Array) -> tuple[float, lis
     return sum(separate) - common, separate
 
 
+@pytest.mark.parametrize(("deviation", "reported"), [(0.08, False), (0.12, True)])
+def test_difference_between_runs_is_reported_from_one_percent_of_the_mean_square(
+    deviation: float, reported: bool
+) -> None:
+    """The squares of the deviations are 0.6 and 1.4 % of the variance of the noise."""
+    noise = np.tile(ALTERNATING, 25)
+    campaign = slides([np.tile(SPEED, 25)] * 2)
+    problem, solution = solution_with(campaign, [noise + deviation, noise - deviation])
+    assert disagreement(problem, solution).beyond_chance()
+    assert bool(find_disagreement(problem, solution, DEFAULT)) == reported
+
+
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
 def test_disagreement_of_runs_is_the_gain_of_separate_regressions(unit: float) -> None:
     sizes = ((0.5, 0.3), (-0.5, 0.0), (0.2, -0.4), (0.0, 0.1))

@@ -302,6 +302,21 @@ def test_sign_after_a_rest_is_unknown_up_to_three_standard_errors_of_path() -> N
     assert motion.sign_known[500:].all()
 
 
+@pytest.mark.parametrize("start_s", [19.002, 19.011, 19.0125])
+def test_smoothed_onset_of_a_motion_is_not_used_while_the_recorded_speed_is_zero(
+    start_s: float,
+) -> None:
+    """A smooth stroke, then an abrupt start: the smoothing spreads it over 0.1 s before it."""
+    time_s = 0.01 * np.arange(3000)
+    stroke = np.where((time_s > 3.0) & (time_s < 13.0), np.sin(0.1 * np.pi * (time_s - 3.0)), 0.0)
+    v = 0.04 * stroke**2 - 0.055 * np.clip(time_s - start_s, 0.0, 1.0)
+    for seed in range(4):
+        speed = np.where(v == 0.0, 0.0, v + white(len(v), seed, 3e-4))
+        path = quantised(integrated(v, 0.01), 2e-5)
+        motion = estimate_motion(run_of(speed, path, time_s), None)
+        assert not np.any(motion.slides[v == 0.0])
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_run_that_begins_with_a_small_oscillation_begins_at_rest(sign: float) -> None:
     alternating = np.where(np.arange(SAMPLES) % 2, -1.0, 1.0)

@@ -283,11 +283,14 @@ def estimate_motion(
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
-    rest &= certain_rests(rest) | (np.abs(smoothed.mean[:, 1]) <= AT_REST_SIGMA * sd)
+    # The smoothing spreads the onset of a motion into the rest, where the readings show none.
+    onset = rest & ~certain_rests(rest) & (np.abs(smoothed.mean[:, 1]) > AT_REST_SIGMA * sd)
+    rest &= ~onset
     velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:3].T)
     error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
+    sign_known &= (contradiction == 0.0) & ~onset
+    sign_known &= ~rest_edges(rest, time, velocity, acceleration)
     sign_known &= ~backward_near_rest(rest, time, velocity, acceleration) & ~records.loose
     if path is not None and not records.speed_measured:
         sign_known &= ~uncertain_near_rest(

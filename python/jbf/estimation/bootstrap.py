@@ -26,10 +26,11 @@ from jbf.arrays import Array
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit
+from jbf.estimation.generalised_least_squares import estimate_all
 from jbf.estimation.identifiability import reason_not_identifiable
 from jbf.estimation.likelihood import effective_share, noise_at
-from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
+from jbf.estimation.posterior_motions import corrected_for_delay
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
@@ -171,21 +172,24 @@ def bootstrap(
     held = {name: truth[name] for name in fitted.fixed}
     bounds = dict(fitted.bounds)
     problem = Problem(campaign, model.law, model.clock, model.effects, held, bounds)
+    given = named_values(start, problem.parameters)
     random = np.random.default_rng(seed)
-    predictions = problem.predict(np.array([truth[name] for name in problem.names]))
-    sigmas = innovation_sizes(fitted, campaign)
+    # A common delay of the force is a part of the prediction, and estimated again.
+    predictions = model.predict_many([p.run for p in campaign.prepared])
     estimates = []
     for k in range(repeats):
         if progress is not None:
             progress("fitting again", k, repeats)
         simulated = [
             simulated_recording(p, f, fitted.noise, sigma, random)
-            for p, f, sigma in zip(campaign.prepared, predictions, sigmas, strict=True)
+            for p, f, sigma in zip(
+                campaign.prepared, predictions, fitted.innovation_sizes, strict=True
+            )
         ]
         try:
             again = Campaign.prepare(model.rig, simulated, time_limit=limit)
             refit = Problem(again, model.law, model.clock, model.effects, held, bounds)
-            estimates.append(minimum(refit, [named_values(start, problem.parameters)]).values)
+            estimates.append(estimate_all(refit, given)[1].values)
         except Unfinished as stop:
             raise stop.with_fit(fitted, campaign.named) from None
     values = dict(zip(problem.names, np.array(estimates).T, strict=True))
@@ -205,18 +209,6 @@ def bootstrap(
         cov_type="bootstrap",
     )
     return Bootstrap(fit, values)
-
-
-def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
-    """Standard deviation of the innovations (whitened residuals) of each run of a fit, N.
-
-    The standard deviation over all runs is used for a run with fewer than 100 samples.
-    """
-    samples = campaign.samples
-    every_run = samples.innovations(fitted.residuals, fitted.noise)
-    innovations = [e[counted] for e, counted in zip(every_run, samples.counted, strict=True)]
-    pooled = float(np.sqrt(np.mean(np.concatenate(innovations) ** 2)))
-    return [float(np.sqrt(np.mean(e**2))) if len(e) >= 100 else pooled for e in innovations]
 
 
 def simulated_recording(
@@ -292,9 +284,9 @@ def simulated_runs(
     """Simulate new recordings of runs with a fitted model, or with some of its effects only.
 
     The friction contains the effects `hidden` of the model. The number `draw` of the simulation is
-    the seed.
+    the seed. A common delay of the force is corrected in the recordings and not simulated.
     """
-    campaign = Campaign.prepare(model.rig, runs)
+    campaign = corrected_for_delay(Campaign.prepare(model.rig, runs), model.force_delay_s)
     problem = Problem(campaign, model.law, model.clock, model.effects)
     values = np.array([model.parameters[name].value for name in problem.names])
     samples = problem.samples_at(values)

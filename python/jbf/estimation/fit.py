@@ -15,23 +15,20 @@ from jbf.estimation.bounds import bounded_pages, checked_bounds
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delay_scan import exact_delay
 from jbf.estimation.estimates import Estimates
-from jbf.estimation.generalised_least_squares import likeliest_with_motion_errors
+from jbf.estimation.generalised_least_squares import estimate_all
 from jbf.estimation.identifiability import correlations, parameter_values, reset_unidentified
 from jbf.estimation.likelihood import log_likelihood
-from jbf.estimation.minimum import best_weighting, minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.posterior_motions import delay_of_further_runs_s
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
 from jbf.estimation.standard_errors import doubtful_errors, standard_errors
-from jbf.estimation.transients import check_film_rate, without_further_transients
-from jbf.estimation.uncertain_samples import has_state_erased_by_sliding
+from jbf.estimation.transients import check_film_rate
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import (
     check_applies,
     find_effect,
-    find_law,
     in_chain_order,
     parameters_of,
 )
@@ -70,6 +67,8 @@ class Fit(Estimates):
         Root mean square of the residual over the included samples, N.
     noise
         The estimated noise model: white noise with a first-order coloured part.
+    innovation_sizes
+        Standard deviation of the whitened residuals of each run, without errors of the motion, N.
     nobs
         Number n of included samples: those in motion with a known sign.
     residuals
@@ -134,6 +133,7 @@ class Fit(Estimates):
     noise_floor: float | None = None
     loglik: float = math.nan
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    innovation_sizes: Sequence[float] = ()
     cov_type: CovType = "model"
 
     def __post_init__(self) -> None:
@@ -248,22 +248,8 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         noise_floor=noise_floor(campaign.prepared, solution.samples) or None,
         loglik=log_likelihood(replace(solution, values=reset.values, residuals=reset.residuals)),
         bounds=problem.bounds,
+        innovation_sizes=solution.innovation_sizes(reset.residuals),
     )
-
-
-def _without_initial_states(
-    problem: Problem, solution: Solution, given: Mapping[str, float]
-) -> tuple[Problem, Solution]:
-    """Fit again without the samples that depend on an unknown initial state of a contact."""
-    if not (find_law(problem.law).has_bristle or has_state_erased_by_sliding(problem.effects)):
-        return problem, solution
-    settled = without_further_transients(problem, solution)
-    if settled is None:
-        return problem, solution
-    problem = problem.with_campaign(settled)
-    known = {**problem.values_by_name(solution.values), **given}
-    again = not_above_nested(problem, minimum(problem, [known]))
-    return likeliest_with_motion_errors(problem, again, given)
 
 
 @one_blas_thread
@@ -359,10 +345,7 @@ def fit(
     given = named_values(start, pages)
     check_film_rate(campaign, law, clock, {**given, **problem.fixed})
     try:
-        solution = not_above_nested(problem, minimum(problem, [given]))
-        problem, solution = likeliest_with_motion_errors(problem, solution, given)
-        problem, solution = _without_initial_states(problem, solution, given)
-        solution = best_weighting(problem, solution)
+        problem, solution = estimate_all(problem, given)
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.lift()
         values = problem.best.values

@@ -27,6 +27,7 @@ from jbf.estimation.delayed_fits import (
 from jbf.estimation.likelihood import likelihood_gain, log_likelihood
 from jbf.estimation.minimum import (
     MAX_EVALUATIONS,
+    best_weighting,
     minimum,
     not_above_nested,
     polish,
@@ -46,12 +47,44 @@ from jbf.estimation.posterior_motions import (
 from jbf.estimation.problem import Problem
 from jbf.estimation.search import NEAR_MINIMUM, search_solution
 from jbf.estimation.solution import Solution
+from jbf.estimation.transients import without_further_transients
+from jbf.estimation.uncertain_samples import has_state_erased_by_sliding
+from jbf.models.catalogue import find_law
 from jbf.models.delayed_reading import TAU
 
 INTENSITY_STEP = 3.0
 """Factor on the noise intensity between two motions whose likelihoods are compared."""
 LEAST_INTENSITY = 1e-4
 """Smallest factor on the intensity, and the reciprocal of the largest."""
+
+
+def estimate_all(problem: Problem, given: Mapping[str, float]) -> tuple[Problem, Solution]:
+    """Estimate the parameters, the errors of the motion, unknown starts and the weights.
+
+    Returns
+    -------
+    Problem, Solution
+        The problem with the estimated motion and the included samples, and its solution.
+    """
+    solution = not_above_nested(problem, minimum(problem, [given]))
+    problem, solution = likeliest_with_motion_errors(problem, solution, given)
+    problem, solution = _without_initial_states(problem, solution, given)
+    return problem, best_weighting(problem, solution)
+
+
+def _without_initial_states(
+    problem: Problem, solution: Solution, given: Mapping[str, float]
+) -> tuple[Problem, Solution]:
+    """Fit again without the samples that depend on an unknown initial state of a contact."""
+    if not (find_law(problem.law).has_bristle or has_state_erased_by_sliding(problem.effects)):
+        return problem, solution
+    settled = without_further_transients(problem, solution)
+    if settled is None:
+        return problem, solution
+    problem = problem.with_campaign(settled)
+    known = {**problem.values_by_name(solution.values), **given}
+    again = not_above_nested(problem, minimum(problem, [known]))
+    return likeliest_with_motion_errors(problem, again, given)
 
 
 def likeliest_with_motion_errors(

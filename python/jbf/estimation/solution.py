@@ -6,10 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from jbf.arrays import Array
 from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 
+OWN_SAMPLES = 100
+"""Number of samples of a run from which it has a standard deviation of its own."""
 Lines = tuple[list[Array], list[Array]]
 """Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
 
@@ -77,3 +81,16 @@ class Solution:
     def stacked(self) -> tuple[Array, Array]:
         """Innovations (whitened residuals) and their Jacobian, for weighted samples of all runs."""
         return self.samples.stacked(self.residuals, self.jacobian, self.noise)
+
+    def innovation_sizes(self, residuals: Sequence[Array]) -> list[float]:
+        """Standard deviation of the innovations of each run, without errors of the motion, N.
+
+        The residuals are those of the reported estimates. For a run with fewer than `OWN_SAMPLES`
+        samples, the standard deviation over all runs is used.
+        """
+        by_run = self.samples.innovations(residuals, self.noise)
+        included = [e[counted] for e, counted in zip(by_run, self.samples.counted, strict=True)]
+        pooled = float(np.sqrt(np.mean(np.concatenate(included) ** 2)))
+        return [
+            float(np.sqrt(np.mean(e**2))) if len(e) >= OWN_SAMPLES else pooled for e in included
+        ]

@@ -82,6 +82,7 @@ NUMERICAL = {
         diagnosis.experiment_design.excitations: MOST LONGEST_S
         diagnosis.experiment_design.plan: LEAST_RUNS MOST_RUNS
         estimation.bootstrap: LEAST_REPEATS MOST_REPEATS
+        estimation.solution: OWN_SAMPLES
     """,
     "resolution of a grid, a derivative or a number of draws": """
         diagnosis.level: DRAWS
@@ -128,7 +129,6 @@ NUMERICAL = {
 }
 """Constants outside the policy: why they decide nothing, and their names by module."""
 COMPARED = {
-    ("estimation.bootstrap", 100.0),  # the bootstrap enters no verdict
     ("estimation.uncertain_samples", 3.0),  # three values have a second difference
     ("estimation.trajectory_fit", 1e6),  # a fit of simulated motions enters no verdict
 }

@@ -46,7 +46,10 @@ def control_of(
     """Return a controller for one run of the given kind."""
     if kind == "hand":
         return _hand(plant, demand, tick_s, ticks, random)
-    position, velocity = _reference(kind, demand, tick_s, ticks, start, random)
+    # Lists: arithmetic with elements of arrays is slow.
+    position, velocity = (
+        reference.tolist() for reference in _reference(kind, demand, tick_s, ticks, start, random)
+    )
     stiffness = 2.0 * math.pi * random.uniform(2.0, 6.0)
     bandwidth = 2.0 * math.pi * random.uniform(15.0, 40.0)
     integral = 0.0 if kind in ("point_to_point", "soft") else bandwidth / random.uniform(0.1, 0.3)
@@ -122,7 +125,7 @@ def _hand(
     k = np.minimum(time.astype(int), len(knots) - 3)
     s = time - k
     smooth = s * s * (3.0 - 2.0 * s)
-    target = knots[k] * (1.0 - smooth) + knots[k + 1] * smooth
+    target = (knots[k] * (1.0 - smooth) + knots[k + 1] * smooth).tolist()
     gain = plant.inertia * 2.0 * math.pi * 3.0
 
     def control(tick: int, x: float, v: float) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -291,23 +292,32 @@ class Together:
 
     parts: tuple[Hidden, ...] = field(default=())
 
+    @cached_property
+    def _acting(self) -> dict[str, tuple[Hidden, ...]]:
+        """Effects that override each method of `Plain`, by name of the method."""
+        names = ("level", "drag", "viscous_factor", "factor", "push", "lost_share")
+        return {
+            name: tuple(p for p in self.parts if getattr(type(p), name) is not getattr(Plain, name))
+            for name in names
+        }
+
     def level(self, at: Course) -> float:
-        return sum(part.level(at) for part in self.parts)
+        return sum([part.level(at) for part in self._acting["level"]])
 
     def drag(self, at: Course) -> float:
-        return sum(part.drag(at) for part in self.parts)
+        return sum([part.drag(at) for part in self._acting["drag"]])
 
     def viscous_factor(self, at: Course) -> float:
-        return math.prod(part.viscous_factor(at) for part in self.parts)
+        return math.prod([part.viscous_factor(at) for part in self._acting["viscous_factor"]])
 
     def factor(self, at: Course) -> float:
-        return math.prod(part.factor(at) for part in self.parts)
+        return math.prod([part.factor(at) for part in self._acting["factor"]])
 
     def push(self, at: Course) -> float:
-        return sum(part.push(at) for part in self.parts)
+        return sum([part.push(at) for part in self._acting["push"]])
 
     def lost_share(self) -> float:
-        return sum(part.lost_share() for part in self.parts)
+        return sum([part.lost_share() for part in self._acting["lost_share"]])
 
 
 NOTHING = Together()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -114,11 +114,13 @@ def run(
                 continue
             force, damping = _sliding(plant, at, u, sign)
             half_s, a0 = 0.5 * remaining_s, (force - damping * v) / m
-            middle = replace(
-                at,
-                time=t + half_s,
-                position=x + half_s * (v + 0.5 * half_s * a0),
-                velocity=v + half_s * a0,
+            middle = Course(
+                t + half_s,
+                x + half_s * (v + 0.5 * half_s * a0),
+                v + half_s * a0,
+                at.strokes,
+                at.phase,
+                at.scatter,
             )
             if sign * middle.velocity > 0.0:
                 force, damping = _sliding(plant, middle, u, sign)

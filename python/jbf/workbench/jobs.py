@@ -57,6 +57,19 @@ class Job:
         }
 
 
+def _process_context() -> Any:
+    """Start method of the processes.
+
+    They are not forked from the server, which is multithreaded. Where possible, they are forked
+    from a process that has loaded the library already.
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["jbf.workbench.work"])
+    return context
+
+
 class Jobs:
     """Manager of the job, of which at most one runs at a time.
 
@@ -88,8 +101,7 @@ class Jobs:
         with self._lock:
             if self.job is not None:
                 raise InputError(problem="a fit is running", remedy="wait for it, or cancel it")
-            # Spawned, not forked, because the server is multithreaded.
-            context = multiprocessing.get_context("spawn")
+            context = _process_context()
             mine, theirs = context.Pipe()
             process = context.Process(target=main, args=(theirs, order), daemon=True)
             self.job, self._process, self._cancelled = Job(words, order.kind), process, False

@@ -71,6 +71,7 @@ def test_each_hidden_effect_is_added_to_the_plant_at_its_strong_or_starting_valu
         assert case.load_factor == (1.5 if name == "load_dependence" else 1.0)
 
 
+@pytest.mark.extended
 def test_hidden_sensor_offset_alters_the_compensator_model_but_not_the_plant() -> None:
     offset = all_cases()["hidden sensor_offset"]
     assert offset.plant == BASE

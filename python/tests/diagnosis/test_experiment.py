@@ -177,6 +177,7 @@ def test_diagnosis_with_a_tie_proposes_a_run_that_reverses() -> None:
     assert np.min(v) < -0.5 * np.max(v) < 0.0
 
 
+@pytest.mark.extended
 def test_diagnosis_without_a_tie_proposes_no_run_to_separate_effects() -> None:
     assert golden("bearing_coulomb_drag").experiment is None
 

@@ -303,6 +303,7 @@ def test_effect_of_slides_and_joints_is_rejected_for_a_bearing(name: str) -> Non
     assert name in str(error)
 
 
+@pytest.mark.extended
 def test_filter_that_smooths_the_noise_of_a_recorded_load_is_not_named() -> None:
     """The noise of the load causes 2 % of the mean square residual, and a filter halves it."""
     runs = []

@@ -194,6 +194,7 @@ def test_simplest_law_is_selected_by_default_if_it_predicts_as_well_with_the_sam
     assert held_out["stribeck"] < held_out["coulomb"]
 
 
+@pytest.mark.extended
 def test_limit_reached_while_the_simplest_law_is_compared_keeps_the_answer() -> None:
     now_s = [0.0]
 

@@ -179,6 +179,7 @@ def test_fit_with_the_hidden_effect_is_likelier_than_the_nested_fit_without_it()
     assert fitted.rms < nested.rms
 
 
+@pytest.mark.extended
 def test_verdict_is_unexplained_if_the_friction_level_differs_by_stroke() -> None:
     found = diagnosed(4045, ("stroke_scatter",))
     assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
@@ -201,6 +202,7 @@ def test_errors_of_the_motion_are_proposed_with_a_delay_of_the_recording() -> No
     assert proposal.problem.effects == ("inertia",)
 
 
+@pytest.mark.extended
 def test_delay_of_an_abrupt_force_belongs_to_the_recording_instead_of_an_effect() -> None:
     """The force was recorded 0.55 sampling intervals of 10.3 ms late."""
     rig, runs = recorded(5024, ("cogging",))
@@ -209,6 +211,7 @@ def test_delay_of_an_abrupt_force_belongs_to_the_recording_instead_of_an_effect(
     assert found.model.force_delay_s == pytest.approx(0.55 / 97.0, rel=0.03)
 
 
+@pytest.mark.extended
 def test_law_without_memory_is_selected_for_coulomb_friction() -> None:
     assert jbf.diagnose(*first_halves(4060), law="auto").model.law == "coulomb"
 
@@ -355,6 +358,7 @@ def test_acceleration_error_of_a_hand_guided_drive_is_below_7_percent_of_its_jum
     assert error < 0.062 * jump
 
 
+@EXTENDED
 def test_filtered_differences_of_coarse_counts_do_not_make_the_motion_rough() -> None:
     """The errors of such a speed are pulses of up to 1 rad/s at each count, not white noise."""
     simulated, campaign = campaign_of(4734)

@@ -82,7 +82,7 @@ def test_limit_reached_in_the_first_round_raises_unfinished_with_the_fitted_law(
 
 @pytest.mark.parametrize(
     "share",
-    [0.5, *(pytest.param(s, marks=pytest.mark.extended) for s in (0.6, 0.7, 0.8, 0.9)), 1.0],
+    [0.5, *(pytest.param(s, marks=pytest.mark.extended) for s in (0.6, 0.7, 0.8, 0.9, 1.0))],
 )
 def test_limit_reached_at_a_report_gives_the_best_model_and_what_was_not_tested(
     share: float,
@@ -100,6 +100,7 @@ def test_limit_reached_at_a_report_gives_the_best_model_and_what_was_not_tested(
         assert [r.axis for r in answer.residual_structure].count("search") == 1
 
 
+@pytest.mark.extended
 def test_later_limit_keeps_all_effects_of_an_earlier_one() -> None:
     answers = [limited(Clock(round(share * reports()))) for share in (0.55, 0.8)]
     assert set(answers[0].effects) <= set(answers[1].effects)

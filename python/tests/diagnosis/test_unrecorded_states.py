@@ -36,7 +36,10 @@ def deflected_run(seed: int, start_n: float, late_s: float) -> jbf.Run:
     return jbf.Run.from_arrays(t, None, reading, position_m=path, name=f"run_{seed}")
 
 
-@pytest.mark.parametrize(("law", "effects"), [("dahl", ()), ("coulomb", ("presliding",))])
+@pytest.mark.parametrize(
+    ("law", "effects"),
+    [pytest.param("dahl", (), marks=pytest.mark.extended), ("coulomb", ("presliding",))],
+)
 def test_start_of_a_run_is_excluded_if_the_contact_was_deflected_differently(
     law: str, effects: tuple[str, ...]
 ) -> None:

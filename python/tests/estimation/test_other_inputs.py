@@ -232,6 +232,7 @@ def test_model_file_of_a_voltage_driven_motor_has_coefficients_in_volts(tmp_path
     assert (units["F_c"], units["F_v"]) == ("V", "V s/rad")
 
 
+@pytest.mark.extended
 def test_standard_errors_of_a_free_swing_contain_the_errors_of_its_acceleration(
     tmp_path: Path,
 ) -> None:

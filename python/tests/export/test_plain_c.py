@@ -125,7 +125,10 @@ def test_compiled_model_with_many_effects_gives_the_numbers_of_the_core(tmp_path
     assert np.max(np.abs(force - expected)) <= 2 * ULPS * np.spacing(np.max(np.abs(expected)))
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    "law",
+    [law if law == "lugre" else pytest.param(law, marks=pytest.mark.extended) for law in LAWS],
+)
 def test_clang_gives_the_numbers_of_the_core(law: str, tmp_path: Path) -> None:
     compiler("clang")
     model, run = model_of(law), runs_with_all_columns(0.005)[0]

@@ -73,6 +73,7 @@ def test_questions_of_an_import_are_answered_by_clicks(tmp_path: Path) -> None:
         assert messages.complaints == messages.outside == []
 
 
+@pytest.mark.extended
 def test_table_of_columns_with_long_names_fits_the_window(tmp_path: Path) -> None:
     t = np.arange(0.0, 8.0, 0.01)
     names = ("controller_timestamp_seconds[s]", "/slide/measuring_system/actual_position[mm]",

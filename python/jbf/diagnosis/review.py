@@ -119,9 +119,9 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 def reconsider(
     candidates: Candidates, present: Names, refused: frozenset[str] = frozenset()
 ) -> Names:
-    """Remove unnecessary effects, and replace an effect if another one has more evidence.
+    """Remove unnecessary effects, and replace an effect by one that describes the records better.
 
-    The review is repeated until the model no longer changes, or an earlier one recurs, since a
+    A replacement has more evidence, or makes a further effect unnecessary. The review is repeated until the model no longer changes, or an earlier one recurs, since a
     replacement may make further effects unnecessary. Effects that were refused in this round
     (`Round.refused`) are not used as replacements.
     """
@@ -148,12 +148,16 @@ def _reviewed_once(candidates: Candidates, present: Names, refused: frozenset[st
             continue  # not exchanged: if a spring is added, a superfluous weight is removed
         others = [o for o in candidates.addable(rest) if o != name and o not in refused]
         tie = candidates.policy.selection.tie
-        costs = swap_costs(candidates, rest, others, full, simpler, max_loss=-tie, only_best=True)
-        best = min(costs, key=costs.__getitem__, default=name)
-        exchanged = tuple(best if e == name else e for e in current)
-        better = best != name and costs[best] < -tie
-        if better and _predicts_no_worse(candidates, exchanged, current):
-            current = exchanged
+        costs = swap_costs(candidates, rest, others, full, simpler, max_loss=tie)
+        for other in sorted((o for o in costs if costs[o] < tie), key=costs.__getitem__):
+            exchanged = tuple(other if e == name else e for e in current)
+            if costs[other] >= -tie:
+                exchanged = still_needed(candidates, exchanged)
+                if len(exchanged) == len(current):
+                    continue
+            if _predicts_no_worse(candidates, exchanged, current):
+                current = exchanged
+                break
     return current
 
 
@@ -171,16 +175,14 @@ def swap_costs(
     near: Solution,
     *,
     max_loss: float,
-    only_best: bool = False,
 ) -> dict[str, float]:
     """Loss of evidence if one effect of the current model is replaced, by name of the replacement.
 
     `rest` has the other effects of the current model, and `others` the names of the replacements.
     `current` and `near` are the solutions of the current model and of that with the effects `rest`.
 
-    A loss is an upper limit if the search was ended, because the loss could not fall below
-    `max_loss` (negative if only a gain is of interest) or, with `only_best`, below that of another
-    replacement.
+    A loss is an upper limit if the search was ended because the loss could not fall below
+    `max_loss`.
     """
     # Fewer samples are independent where the residual of `current` is correlated.
     share = candidates.independent_share(current)
@@ -226,8 +228,6 @@ def swap_costs(
         # fewer samples.
         gains = evidence_on_common_samples(candidates, solution, near) > 0.0
         costs[name] = cost(solution if gains else near)
-        if only_best:
-            max_loss = min(max_loss, costs[name])
     return costs
 
 

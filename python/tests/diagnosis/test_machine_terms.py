@@ -148,3 +148,24 @@ def test_friction_that_differs_by_direction_is_an_alternative_of_the_offset() ->
     assert (found.verdict, found.machine) == ("adequate", ("sensor_offset",))
     assert "dry_asymmetry" in found.alternatives["sensor_offset"]
     assert "dry_asymmetry" in found.summary(full=True).partition("Measurement")[0]
+
+
+def test_effect_that_fits_as_well_and_makes_the_offset_unnecessary_replaces_another() -> None:
+    """An offset and friction that differs by direction in full resemble `viscous_asymmetry`."""
+    random, runs = np.random.default_rng(7), []
+    thinning, asymmetry = random.uniform(3.0, 12.0), random.uniform(6.0, 20.0)
+    asymmetry *= random.choice([-1.0, 1.0])
+    time_s = 0.01 * np.arange(800)
+    for k in range(3):
+        rad_s, size_m = random.uniform(1.0, 5.0, (2, 1)), random.uniform(0.02, 0.2, (2, 1))
+        phase = rad_s * time_s
+        x = np.sum(size_m * np.sin(phase), axis=0)
+        v = np.sum(size_m * rad_s * np.cos(phase), axis=0)
+        a = np.sum(-size_m * rad_s**2 * np.sin(phase), axis=0)
+        viscous = (40.0 * v + asymmetry * np.abs(v)) / (1.0 + thinning * np.abs(v))
+        force = 5.0 * np.sign(v) + viscous + 2.0 * a + 0.15 * random.standard_normal(len(v))
+        speed = v + 1e-4 * random.standard_normal(len(v))
+        runs.append(Run.from_arrays(time_s, speed, force, position_m=x, name=f"run_{k}"))
+    found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
+    assert set(found.effects) == {"viscous_asymmetry", "viscous_thinning"}, found.summary()
+    assert (found.verdict, found.machine) == ("missing", ("inertia",))

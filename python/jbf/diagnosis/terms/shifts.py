@@ -173,7 +173,9 @@ def _iterate(start: Shifted, advance: Callable[[Shifted], Shifted | None]) -> Sh
         after = advance(now)
         if after is None:
             return start
-        if after is not now:
+        # Friction jumps are not linear in a delay: a step may increase the residual.
+        improves = after is not now and not (white and after.solution.rms > now.solution.rms)
+        if improves:
             now = after
         elif white:
             now, white = _with_coloured_noise(now), False

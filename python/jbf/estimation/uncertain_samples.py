@@ -151,6 +151,22 @@ def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
     return errors
 
 
+def at_known_instant(p: Prepared, residual: Array, noise_rms: float) -> Mask:
+    """Mask of the samples at which errors in time change a prediction by less than the noise.
+
+    The error in time is that of the time stamps, and of the motion: the standard error of the speed
+    divided by the acceleration, up to that of a uniform instant between two samples. Shape (n,).
+    """
+    motion, smoothed = p.motion, None if p.motion.errors is None else p.motion.errors.smoothed
+    stamp_s = 0.0 if smoothed is None else float(np.sqrt(smoothed.errors.stamp_variance))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        of_motion_s = motion.velocity_error_m_s / np.abs(motion.acceleration)
+    of_motion_s = np.minimum(np.nan_to_num(of_motion_s), MOST * p.step_s)
+    rate_n_s = np.gradient(p.friction - residual, p.run.time_s)
+    mask: Mask = np.hypot(stamp_s, of_motion_s) * np.abs(rate_n_s) <= noise_rms
+    return mask
+
+
 def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
     """Indices of the last sample before, and of the first sample after, each reversal.
 

@@ -18,6 +18,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.uncertain_samples import (
     active_effects,
+    at_known_instant,
     after_rests,
     jumps,
     moves_jumps,
@@ -307,3 +308,18 @@ def test_errors_after_slow_reversals_are_as_large_as_predicted(seeds: range) -> 
         assert np.max(error_n) > 2.0 * noise_rms
     assert 0.4 < np.sqrt(np.mean(np.concatenate(doubtful) ** 2)) < 2.0
     assert np.sqrt(np.mean(np.concatenate(others) ** 2)) == pytest.approx(1.0, abs=0.05)
+
+
+def test_instant_is_known_where_its_error_changes_the_force_by_less_than_the_noise() -> None:
+    """Position read up to 4 ms off the time stamps; force that reverses within 0.1 s."""
+    t, error_s, noise_rms = 0.005 * np.arange(4000), 1.5e-3, 0.1
+    read_s = t + error_s * np.random.default_rng(3).standard_normal(len(t))
+    position = 0.05 * np.sin(3.0 * read_s)
+    force = 10.0 * np.tanh(np.cos(3.0 * t) / 0.15)
+    run = Run.from_arrays(t, None, force, position_m=position, name="a")
+    (p,) = Campaign.prepare(Rig(), [run]).prepared
+    known = at_known_instant(p, np.zeros(len(t)), noise_rms)
+    change_n = error_s * np.abs(np.gradient(force, t))
+    assert 100 < np.sum(change_n > 1.5 * noise_rms) < 1000
+    assert not known[change_n > 1.5 * noise_rms].any()
+    assert known[change_n < 0.5 * noise_rms].all()

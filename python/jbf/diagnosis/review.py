@@ -121,9 +121,10 @@ def reconsider(
 ) -> Names:
     """Remove unnecessary effects, and replace an effect by one that describes the records better.
 
-    A replacement has more evidence, or makes a further effect unnecessary. The review is repeated until the model no longer changes, or an earlier one recurs, since a
-    replacement may make further effects unnecessary. Effects that were refused in this round
-    (`Round.refused`) are not used as replacements.
+    A replacement has more evidence, or makes a further effect unnecessary. The review is repeated
+    until the model no longer changes, or an earlier one recurs, since a replacement may make
+    further effects unnecessary. Effects that were refused in this round (`Round.refused`) are not
+    used as replacements.
     """
     seen = [present]
     while (current := _reviewed_once(candidates, seen[-1], refused)) not in seen:

@@ -18,8 +18,8 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.uncertain_samples import (
     active_effects,
-    at_known_instant,
     after_rests,
+    at_known_instant,
     jumps,
     moves_jumps,
     samples_near_jumps,

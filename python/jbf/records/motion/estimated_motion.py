@@ -262,7 +262,8 @@ def estimate_motion(
     records = corrected_records(run, radius_m, stamps_s)
     time, path, speed, step = run.time_s, records.path, records.speed, records.step
     n = len(time)
-    rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
+    zero_speed = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
+    rest = zero_speed.copy()
     if path is not None:
         rest |= still_samples(time, path, speed, step, records.hum)
     readings = _readings(records, time, rest)
@@ -283,13 +284,13 @@ def estimate_motion(
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
-    # The smoothing spreads the onset of a motion into the rest, where the readings show none.
-    onset = rest & ~certain_rests(rest) & (np.abs(smoothed.mean[:, 1]) > AT_REST_SIGMA * sd)
-    rest &= ~onset
+    moves = rest & ~certain_rests(rest) & (np.abs(smoothed.mean[:, 1]) > AT_REST_SIGMA * sd)
+    rest &= ~moves
     velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:3].T)
     error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    sign_known &= (contradiction == 0.0) & ~onset
+    # The smoothing spreads the onset of a motion into a rest at which the recorded speed is zero.
+    sign_known &= (contradiction == 0.0) & ~(moves & zero_speed)
     sign_known &= ~rest_edges(rest, time, velocity, acceleration)
     sign_known &= ~backward_near_rest(rest, time, velocity, acceleration) & ~records.loose
     if path is not None and not records.speed_measured:

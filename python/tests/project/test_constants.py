@@ -16,6 +16,7 @@ POLICY = {"diagnosis.policy_sections", "diagnosis.policy_residual", "estimation.
 
 NUMERICAL = {
     "reported next to the verdict or used after it: power, proposals, checks, final fit": """
+        estimation.solution: OWN_SAMPLES
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.directions: DECOY_DRAWS SURE
@@ -82,7 +83,6 @@ NUMERICAL = {
         diagnosis.experiment_design.excitations: MOST LONGEST_S
         diagnosis.experiment_design.plan: LEAST_RUNS MOST_RUNS
         estimation.bootstrap: LEAST_REPEATS MOST_REPEATS
-        estimation.solution: OWN_SAMPLES
     """,
     "resolution of a grid, a derivative or a number of draws": """
         diagnosis.level: DRAWS

@@ -294,7 +294,7 @@ class Together:
 
     @cached_property
     def _acting(self) -> dict[str, tuple[Hidden, ...]]:
-        """Effects that override each method of `Plain`, by name of the method."""
+        """For each method of `Plain`, the effects that override it."""
         names = ("level", "drag", "viscous_factor", "factor", "push", "lost_share")
         return {
             name: tuple(p for p in self.parts if getattr(type(p), name) is not getattr(Plain, name))

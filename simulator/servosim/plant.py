@@ -115,12 +115,12 @@ def run(
             force, damping = _sliding(plant, at, u, sign)
             half_s, a0 = 0.5 * remaining_s, (force - damping * v) / m
             middle = Course(
-                t + half_s,
-                x + half_s * (v + 0.5 * half_s * a0),
-                v + half_s * a0,
-                at.strokes,
-                at.phase,
-                at.scatter,
+                time=t + half_s,
+                position=x + half_s * (v + 0.5 * half_s * a0),
+                velocity=v + half_s * a0,
+                strokes=at.strokes,
+                phase=at.phase,
+                scatter=at.scatter,
             )
             if sign * middle.velocity > 0.0:
                 force, damping = _sliding(plant, middle, u, sign)

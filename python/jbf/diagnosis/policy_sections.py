@@ -146,7 +146,8 @@ class Search:
     )
     leaders: int = documented(
         3,
-        "number of candidates with the largest gains that are tested by independent units",
+        "number of candidates with the largest gains that are tested by independent units, and of "
+        "replacements of an effect that are tested",
         "chosen for speed",
     )
     paired: int = documented(

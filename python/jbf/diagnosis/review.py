@@ -119,12 +119,12 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 def reconsider(
     candidates: Candidates, present: Names, refused: frozenset[str] = frozenset()
 ) -> Names:
-    """Remove unnecessary effects, and replace an effect by one that describes the records better.
+    """Remove unnecessary effects, and replace an effect by a better one.
 
-    A replacement has more evidence, or makes a further effect unnecessary. The review is repeated
-    until the model no longer changes, or an earlier one recurs, since a replacement may make
-    further effects unnecessary. Effects that were refused in this round (`Round.refused`) are not
-    used as replacements.
+    A replacement has more evidence, or as much and makes a further effect unnecessary. The review
+    is repeated until the model no longer changes, or an earlier one recurs, since a replacement may
+    make further effects unnecessary. Effects that were refused in this round (`Round.refused`) are
+    not used as replacements.
     """
     seen = [present]
     while (current := _reviewed_once(candidates, seen[-1], refused)) not in seen:
@@ -150,11 +150,12 @@ def _reviewed_once(candidates: Candidates, present: Names, refused: frozenset[st
         others = [o for o in candidates.addable(rest) if o != name and o not in refused]
         tie = candidates.policy.selection.tie
         costs = swap_costs(candidates, rest, others, full, simpler, max_loss=tie)
-        for other in sorted((o for o in costs if costs[o] < tie), key=costs.__getitem__):
+        close = sorted((o for o in costs if costs[o] < tie), key=costs.__getitem__)
+        for other in close[: candidates.policy.search.leaders]:
             exchanged = tuple(other if e == name else e for e in current)
             if costs[other] >= -tie:
                 exchanged = still_needed(candidates, exchanged)
-                if len(exchanged) == len(current):
+                if other not in exchanged or len(exchanged) == len(current):
                     continue
             if _predicts_no_worse(candidates, exchanged, current):
                 current = exchanged
@@ -182,8 +183,8 @@ def swap_costs(
     `rest` has the other effects of the current model, and `others` the names of the replacements.
     `current` and `near` are the solutions of the current model and of that with the effects `rest`.
 
-    A loss is an upper limit if the search was ended because the loss could not fall below
-    `max_loss`.
+    A loss is an upper limit if the replacement was not fitted to the end, because its loss could
+    not fall below `max_loss`.
     """
     # Fewer samples are independent where the residual of `current` is correlated.
     share = candidates.independent_share(current)

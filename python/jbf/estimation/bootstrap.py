@@ -26,17 +26,17 @@ from jbf.arrays import Array
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit
-from jbf.estimation.generalised_least_squares import estimate_all
+from jbf.estimation.generalised_least_squares import stages_of_fit
 from jbf.estimation.identifiability import reason_not_identifiable
 from jbf.estimation.likelihood import effective_share, noise_at
 from jbf.estimation.noise import Noise
-from jbf.estimation.posterior_motions import corrected_for_delay
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import blocks_of
 from jbf.estimation.work import TimeLimit
 from jbf.models.catalogue import Parameter
+from jbf.models.driven_motion import driven_motion
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.arguments import check_callable, checked_integer, of_kind
@@ -174,8 +174,13 @@ def bootstrap(
     problem = Problem(campaign, model.law, model.clock, model.effects, held, bounds)
     given = named_values(start, problem.parameters)
     random = np.random.default_rng(seed)
-    # A common delay of the force is a part of the prediction, and estimated again.
-    predictions = model.predict_many([p.run for p in campaign.prepared])
+    if len(fitted.innovation_rms) != len(campaign.prepared):
+        raise InputError(
+            problem=f"the fit is not one to these {len(campaign.prepared)} runs",
+            remedy="give the runs that were fitted",
+        )
+    # The prediction includes a common delay of the force; each fit estimates it again.
+    predictions = _delayed_predictions(problem, model)
     estimates = []
     for k in range(repeats):
         if progress is not None:
@@ -183,13 +188,14 @@ def bootstrap(
         simulated = [
             simulated_recording(p, f, fitted.noise, sigma, random)
             for p, f, sigma in zip(
-                campaign.prepared, predictions, fitted.innovation_sizes, strict=True
+                campaign.prepared, predictions, fitted.innovation_rms, strict=True
             )
         ]
         try:
             again = Campaign.prepare(model.rig, simulated, time_limit=limit)
             refit = Problem(again, model.law, model.clock, model.effects, held, bounds)
-            estimates.append(estimate_all(refit, given)[1].values)
+            *_, (_, solution) = stages_of_fit(refit, given)
+            estimates.append(solution.values)
         except Unfinished as stop:
             raise stop.with_fit(fitted, campaign.named) from None
     values = dict(zip(problem.names, np.array(estimates).T, strict=True))
@@ -209,6 +215,22 @@ def bootstrap(
         cov_type="bootstrap",
     )
     return Bootstrap(fit, values)
+
+
+def _delayed_predictions(problem: Problem, model: Model) -> list[Array]:
+    """Predict the friction of the prepared runs with the parameters and the delay of a model, N.
+
+    The effects are those of the problem, a part of those of the model.
+    """
+    values = np.array([model.parameters[name].value for name in problem.names])
+    if model.force_delay_s == 0.0:
+        return problem.predict(values)
+    motions = []
+    for p in problem.campaign.prepared:
+        instants, motion = p.motion_as_read
+        read = np.clip(p.run.time_s - model.force_delay_s, instants[0], instants[-1])
+        motions.append(driven_motion(p.rig, p.run, motion.at(instants, read)))
+    return problem.chain.predict(values, motions)
 
 
 def simulated_recording(
@@ -284,15 +306,19 @@ def simulated_runs(
     """Simulate new recordings of runs with a fitted model, or with some of its effects only.
 
     The friction contains the effects `hidden` of the model. The number `draw` of the simulation is
-    the seed. A common delay of the force is corrected in the recordings and not simulated.
+    the seed. The simulated force has the common delay of the fitted one.
     """
-    campaign = corrected_for_delay(Campaign.prepare(model.rig, runs), model.force_delay_s)
+    campaign = Campaign.prepare(model.rig, runs)
     problem = Problem(campaign, model.law, model.clock, model.effects)
     values = np.array([model.parameters[name].value for name in problem.names])
     samples = problem.samples_at(values)
     solution = problem.solution(values, samples, noise_at(problem, samples, values))
+    if model.force_delay_s != 0.0:
+        predictions = _delayed_predictions(problem, model)
+        residuals = [p.friction - f for p, f in zip(campaign.prepared, predictions, strict=True)]
+        solution = replace(solution, residuals=residuals)
     reduced = Problem(campaign, model.law, model.clock, hidden)
-    friction = reduced.predict(np.array([model.parameters[name].value for name in reduced.names]))
+    friction = _delayed_predictions(reduced, model)
     random = np.random.default_rng([draw, len(hidden)])
     errors = _sign_randomised(solution, campaign, random)
     return [

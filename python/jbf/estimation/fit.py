@@ -15,7 +15,7 @@ from jbf.estimation.bounds import bounded_pages, checked_bounds
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delay_scan import exact_delay
 from jbf.estimation.estimates import Estimates
-from jbf.estimation.generalised_least_squares import estimate_all
+from jbf.estimation.generalised_least_squares import stages_of_fit
 from jbf.estimation.identifiability import correlations, parameter_values, reset_unidentified
 from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.noise import WHITE, Noise
@@ -67,8 +67,9 @@ class Fit(Estimates):
         Root mean square of the residual over the included samples, N.
     noise
         The estimated noise model: white noise with a first-order coloured part.
-    innovation_sizes
-        Standard deviation of the whitened residuals of each run, without errors of the motion, N.
+    innovation_rms
+        Root mean square of the whitened residuals of each run, N. If the errors of the motion are
+        estimated, it is that of the noise of the force.
     nobs
         Number n of included samples: those in motion with a known sign.
     residuals
@@ -133,7 +134,7 @@ class Fit(Estimates):
     noise_floor: float | None = None
     loglik: float = math.nan
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    innovation_sizes: Sequence[float] = ()
+    innovation_rms: Sequence[float] = ()
     cov_type: CovType = "model"
 
     def __post_init__(self) -> None:
@@ -248,7 +249,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         noise_floor=noise_floor(campaign.prepared, solution.samples) or None,
         loglik=log_likelihood(replace(solution, values=reset.values, residuals=reset.residuals)),
         bounds=problem.bounds,
-        innovation_sizes=solution.innovation_sizes(reset.residuals),
+        innovation_rms=solution.innovation_rms(reset.residuals),
     )
 
 
@@ -345,7 +346,8 @@ def fit(
     given = named_values(start, pages)
     check_film_rate(campaign, law, clock, {**given, **problem.fixed})
     try:
-        problem, solution = estimate_all(problem, given)
+        for stage in stages_of_fit(problem, given):
+            problem, solution = stage
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.lift()
         values = problem.best.values

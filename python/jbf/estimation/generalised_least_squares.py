@@ -7,7 +7,7 @@ estimated jointly with the model.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -58,18 +58,22 @@ LEAST_INTENSITY = 1e-4
 """Smallest factor on the intensity, and the reciprocal of the largest."""
 
 
-def estimate_all(problem: Problem, given: Mapping[str, float]) -> tuple[Problem, Solution]:
-    """Estimate the parameters, the errors of the motion, unknown starts and the weights.
+def stages_of_fit(
+    problem: Problem, given: Mapping[str, float]
+) -> Iterator[tuple[Problem, Solution]]:
+    """Fit a model in stages, and yield the problem and its solution after each stage.
 
-    Returns
-    -------
-    Problem, Solution
-        The problem with the estimated motion and the included samples, and its solution.
+    The stages are ordinary least squares, the errors of the motion with a common delay of the
+    force, the exclusion of samples with an unknown initial state, and robust weights. `given` has
+    starting values.
     """
     solution = not_above_nested(problem, minimum(problem, [given]))
+    yield problem, solution
     problem, solution = likeliest_with_motion_errors(problem, solution, given)
+    yield problem, solution
     problem, solution = _without_initial_states(problem, solution, given)
-    return problem, best_weighting(problem, solution)
+    yield problem, solution
+    yield problem, best_weighting(problem, solution)
 
 
 def _without_initial_states(

@@ -12,8 +12,8 @@ from jbf.arrays import Array
 from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 
-OWN_SAMPLES = 100
-"""Number of samples of a run from which it has a standard deviation of its own."""
+MIN_SAMPLES = 100
+"""Minimum number of samples of a run for a root mean square of its own."""
 Lines = tuple[list[Array], list[Array]]
 """Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
 
@@ -82,15 +82,14 @@ class Solution:
         """Innovations (whitened residuals) and their Jacobian, for weighted samples of all runs."""
         return self.samples.stacked(self.residuals, self.jacobian, self.noise)
 
-    def innovation_sizes(self, residuals: Sequence[Array]) -> list[float]:
-        """Standard deviation of the innovations of each run, without errors of the motion, N.
+    def innovation_rms(self, residuals: Sequence[Array]) -> list[float]:
+        """Root mean square of the innovations of each run, N, for the residuals of the estimates.
 
-        The residuals are those of the reported estimates. For a run with fewer than `OWN_SAMPLES`
-        samples, the standard deviation over all runs is used.
+        For a run with fewer than `MIN_SAMPLES` samples, it is that of all runs.
         """
         by_run = self.samples.innovations(residuals, self.noise)
         included = [e[counted] for e, counted in zip(by_run, self.samples.counted, strict=True)]
         pooled = float(np.sqrt(np.mean(np.concatenate(included) ** 2)))
         return [
-            float(np.sqrt(np.mean(e**2))) if len(e) >= OWN_SAMPLES else pooled for e in included
+            float(np.sqrt(np.mean(e**2))) if len(e) >= MIN_SAMPLES else pooled for e in included
         ]

@@ -151,11 +151,12 @@ def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
     return errors
 
 
-def at_known_instant(p: Prepared, residual: Array, noise_rms: float) -> Mask:
-    """Mask of the samples at which errors in time change a prediction by less than the noise.
+def timing_error_is_small(p: Prepared, residual: Array, least_n: float) -> Mask:
+    """Mask of the samples at which the timing error changes a prediction by at most `least_n`, N.
 
-    The error in time is that of the time stamps, and of the motion: the standard error of the speed
-    divided by the acceleration, up to that of a uniform instant between two samples. Shape (n,).
+    The timing error is that of the time stamps and of the motion: the standard error of the speed
+    divided by the acceleration, at most that of a uniform instant between two samples. `residual`
+    is record minus prediction. Shape (n,).
     """
     motion, smoothed = p.motion, None if p.motion.errors is None else p.motion.errors.smoothed
     stamp_s = 0.0 if smoothed is None else float(np.sqrt(smoothed.errors.stamp_variance))
@@ -163,7 +164,7 @@ def at_known_instant(p: Prepared, residual: Array, noise_rms: float) -> Mask:
         of_motion_s = motion.velocity_error_m_s / np.abs(motion.acceleration)
     of_motion_s = np.minimum(np.nan_to_num(of_motion_s), MOST * p.step_s)
     rate_n_s = np.gradient(p.friction - residual, p.run.time_s)
-    mask: Mask = np.hypot(stamp_s, of_motion_s) * np.abs(rate_n_s) <= noise_rms
+    mask: Mask = np.hypot(stamp_s, of_motion_s) * np.abs(rate_n_s) <= least_n
     return mask
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -58,12 +59,12 @@ class Job:
 
 
 def _process_context() -> Any:
-    """Start method of the processes.
+    """Return the multiprocessing context for jobs.
 
-    They are not forked from the server, which is multithreaded. Where possible, they are forked
-    from a process that has loaded the library already.
+    They are not forked from the server, which is multithreaded. On Linux they are forked from a
+    process that has loaded the library already, which takes less time than loading it again.
     """
-    if "forkserver" not in multiprocessing.get_all_start_methods():
+    if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["jbf.workbench.work"])
@@ -104,9 +105,9 @@ class Jobs:
             context = _process_context()
             mine, theirs = context.Pipe()
             process = context.Process(target=main, args=(theirs, order), daemon=True)
+            process.start()
             self.job, self._process, self._cancelled = Job(words, order.kind), process, False
             self._connection = mine
-        process.start()
         theirs.close()
         threading.Thread(
             target=self._follow, args=(mine, process, on_end, part), daemon=True

@@ -200,7 +200,7 @@ def test_plan_command_writes_runs_that_the_power_command_reads(
 @pytest.mark.parametrize(
     ("options", "limit_m", "source"),
     [
-        pytest.param(["--travel", "150 mm"], 0.15, "given", marks=pytest.mark.extended),
+        (["--travel", "150 mm"], 0.15, "given"),
         pytest.param(["--travel", "0.15"], 0.15, "given", marks=pytest.mark.extended),
         ([], 0.2, "recorded"),
     ],

@@ -9,6 +9,7 @@ import pytest
 from by_hand import LAW, Array, coulomb, four_runs
 from campaigns import campaign
 from jbf import Fit, InputError, Model, Parameter, ParameterValue, Rig, Run, fit
+from jbf.errors import Stopped
 from jbf.estimation.bootstrap import (
     LEAST_REPEATS,
     MOST_REPEATS,
@@ -113,7 +114,7 @@ def test_innovation_rms_is_that_of_the_run_or_of_all_runs_if_the_run_is_short() 
     innovations = [found.noise.innovations(r, 0.02) for r in found.residuals]
     own = [float(np.sqrt(np.mean(e**2))) for e in innovations]
     pooled = float(np.sqrt(np.mean(np.concatenate(innovations) ** 2)))
-    assert found.innovation_sizes == pytest.approx([own[0], own[1], pooled])
+    assert found.innovation_rms == pytest.approx([own[0], own[1], pooled])
 
 
 @pytest.fixture(scope="module", params=["slide", "bearing"])
@@ -212,6 +213,11 @@ def test_wild_bootstrap_flips_signs_of_residuals_in_blocks_of_one_second() -> No
 DELAY_S = 0.012
 
 
+def white_noise_n() -> Array:
+    """White noise of 0.1 N at 500 samples."""
+    return 0.1 * np.random.default_rng(6).standard_normal(500)
+
+
 @pytest.fixture(scope="module")
 def delayed() -> list[Run]:
     """Reversals of 1 kg on a slide; the force is late by three samples, with noise of 0.1 N."""
@@ -237,11 +243,34 @@ def test_bootstrap_estimates_a_common_delay_again(delayed: list[Run]) -> None:
         assert np.mean(estimates[name]) == pytest.approx(true, rel=0.03), name
 
 
-def test_wild_bootstrap_simulates_recordings_without_the_common_delay(delayed: list[Run]) -> None:
+@pytest.mark.parametrize("delay_s", [DELAY_S, -0.0055])
+def test_wild_bootstrap_simulates_recordings_with_the_common_delay(
+    delayed: list[Run], delay_s: float
+) -> None:
     values = {"F_c": 3.0, "F_s": 3.0, "F_v": 2.0, "inertia.m_e": 1.0}
-    late = Model(Rig(), "coulomb", ["inertia"], values, fit={"force_delay_s": DELAY_S})
-    (again,) = simulated_runs(late, delayed, ["inertia"], 1)
-    undelayed = Model(Rig(), "coulomb", ["inertia"], values)
-    residual = np.asarray(again.friction) - undelayed.predict(again)
-    # Without the correction, the residual is the change of the force in 12 ms, 1.2 N RMS.
-    assert np.median(np.abs(residual)) < 0.1
+    late = Model(Rig(), "coulomb", ["inertia"], values, fit={"force_delay_s": delay_s})
+    records = delayed
+    if delay_s != DELAY_S:
+        records = [replace(delayed[0], friction=late.predict(delayed[0]) + white_noise_n())]
+    again = simulated_runs(late, records, ["inertia"], 1)
+    found = fit(Rig(), again, ["inertia"], law="coulomb", fixed={"F_s": 3.0})
+    assert found.model.force_delay_s == pytest.approx(delay_s, abs=2.5e-3)
+    assert found.rms == pytest.approx(0.1, rel=0.2)
+
+
+def test_bootstrap_refuses_a_fit_to_other_runs(fitted: Fit, runs: list[Run]) -> None:
+    with pytest.raises(InputError, match="these 1 runs"):
+        bootstrap(fitted, runs[:1])
+
+
+def test_interrupted_fit_keeps_the_corrected_delay(
+    delayed: list[Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("jbf.estimation.generalised_least_squares.best_weighting", interrupt)
+    with pytest.raises(Stopped) as stopped:
+        fit(Rig(), delayed, ["inertia"], law="coulomb", fixed={"F_s": 3.0})
+    assert stopped.value.fit.model.force_delay_s == pytest.approx(DELAY_S, abs=2.5e-3)
+    assert stopped.value.fit.rms == pytest.approx(0.1, rel=0.2)

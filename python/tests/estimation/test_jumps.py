@@ -19,11 +19,11 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.uncertain_samples import (
     active_effects,
     after_rests,
-    at_known_instant,
     jumps,
     moves_jumps,
     samples_near_jumps,
     spreads_jumps,
+    timing_error_is_small,
     timing_errors,
 )
 from jbf.models.catalogue import parameters_of
@@ -311,15 +311,20 @@ def test_errors_after_slow_reversals_are_as_large_as_predicted(seeds: range) -> 
 
 
 def test_instant_is_known_where_its_error_changes_the_force_by_less_than_the_noise() -> None:
-    """Position read up to 4 ms off the time stamps; force that reverses within 0.1 s."""
-    t, error_s, noise_rms = 0.005 * np.arange(4000), 1.5e-3, 0.1
+    """Position read up to 3 ms off the time stamps; force that reverses within 0.1 s."""
+    t, error_s, noise_rms = 0.005 * np.arange(4000), 1e-3, 0.07
     read_s = t + error_s * np.random.default_rng(3).standard_normal(len(t))
     position = 0.05 * np.sin(3.0 * read_s)
     force = 10.0 * np.tanh(np.cos(3.0 * t) / 0.15)
     run = Run.from_arrays(t, None, force, position_m=position, name="a")
     (p,) = Campaign.prepare(Rig(), [run]).prepared
-    known = at_known_instant(p, np.zeros(len(t)), noise_rms)
+    known = timing_error_is_small(p, np.zeros(len(t)), noise_rms)
     change_n = error_s * np.abs(np.gradient(force, t))
     assert 100 < np.sum(change_n > 1.5 * noise_rms) < 1000
     assert not known[change_n > 1.5 * noise_rms].any()
     assert known[change_n < 0.5 * noise_rms].all()
+    # The speed is uncertain instead of the time stamps.
+    error_m_s = error_s * np.abs(p.motion.acceleration)
+    uncertain = replace(p.motion, velocity_error_m_s=error_m_s, errors=None)
+    known = timing_error_is_small(replace(p, motion=uncertain), np.zeros(len(t)), noise_rms)
+    np.testing.assert_array_equal(known, change_n <= noise_rms)

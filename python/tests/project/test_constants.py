@@ -16,7 +16,7 @@ POLICY = {"diagnosis.policy_sections", "diagnosis.policy_residual", "estimation.
 
 NUMERICAL = {
     "reported next to the verdict or used after it: power, proposals, checks, final fit": """
-        estimation.solution: OWN_SAMPLES
+        estimation.solution: MIN_SAMPLES
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.directions: DECOY_DRAWS SURE

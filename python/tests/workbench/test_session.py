@@ -1,9 +1,11 @@
 """A session without a browser: open, fit, add an effect, cancel, save, resume."""
 
 import json
+import pickle
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,6 +96,15 @@ def test_detectable_strength_falls_when_missing_effect_is_added(fitted: Session)
     assert before[::2] == after[::2] == ["b", "N"]
     # The missing effect increases the residual; without it, weaker effects are detectable.
     assert float(after[1]) < 0.7 * float(before[1])
+
+
+def test_job_that_cannot_be_started_does_not_block_the_next_one(loaded: Session) -> None:
+    cannot_be_sent: Any = lambda: None  # noqa: E731
+    with pytest.raises((AttributeError, pickle.PicklingError)):
+        loaded.jobs.start("a fit", cannot_be_sent, lambda *_: None)
+    loaded.begin("round", (), None)
+    wait_until_idle(loaded)
+    assert len(loaded.models.nodes) == 1
 
 
 @pytest.mark.extended

@@ -30,7 +30,7 @@ from jbf.estimation.generalised_least_squares import with_less_smoothing
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.estimation.uncertain_samples import at_known_instant
+from jbf.estimation.uncertain_samples import timing_error_is_small
 from jbf.models.catalogue import transition_speed
 
 
@@ -61,12 +61,13 @@ def find_residual_structure(
     structure += find_ripples(problem.campaign, samples, innovations, residuals, policy)
     structure += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
-    known = [
-        at_known_instant(p, r, solution.rms)
+    # The timing error of a steep force lasts for several samples, as a burst does.
+    certain = [
+        timing_error_is_small(p, r, solution.rms)
         for p, r in zip(prepared, solution.residuals, strict=True)
     ]
-    at_known = samples.with_known_motion().within(known)
-    structure += find_bursts(prepared, at_known, plain, residuals, policy)
+    tested = samples.with_known_motion().within(certain)
+    structure += find_bursts(prepared, tested, plain, residuals, policy)
     structure += find_disagreement(problem, solution, policy)
     structure += find_stroke_levels(problem, solution, policy)
     # Coarse quantisation biases mean readings along any axis and in each run.

@@ -284,13 +284,15 @@ def estimate_motion(
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
-    moves = rest & ~certain_rests(rest) & (np.abs(smoothed.mean[:, 1]) > AT_REST_SIGMA * sd)
-    rest &= ~moves
+    moves_in_rest = rest & ~certain_rests(rest) & (np.abs(smoothed.mean[:, 1]) > AT_REST_SIGMA * sd)
+    rest &= ~moves_in_rest
     velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:3].T)
     error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    # The smoothing spreads the onset of a motion into a rest at which the recorded speed is zero.
-    sign_known &= (contradiction == 0.0) & ~(moves & zero_speed)
+    # The smoother spreads starts and stops into rests. Where the recorded speed is zero, although
+    # its quantisation would resolve the smoothed speed, the direction is unknown.
+    resolved = np.abs(velocity) > np.sqrt(3.0 * readings.velocity_floor)
+    sign_known &= (contradiction == 0.0) & ~(moves_in_rest & zero_speed & resolved)
     sign_known &= ~rest_edges(rest, time, velocity, acceleration)
     sign_known &= ~backward_near_rest(rest, time, velocity, acceleration) & ~records.loose
     if path is not None and not records.speed_measured:

@@ -183,8 +183,8 @@ def swap_costs(
     `rest` has the other effects of the current model, and `others` the names of the replacements.
     `current` and `near` are the solutions of the current model and of that with the effects `rest`.
 
-    A loss is an upper limit if the replacement was not fitted to the end, because its loss could
-    not fall below `max_loss`.
+    It is infinite for a replacement without evidence, and an upper limit for one that was not
+    fitted to the end, because its loss could not fall below `max_loss`.
     """
     # Fewer samples are independent where the residual of `current` is correlated.
     share = candidates.independent_share(current)
@@ -196,7 +196,7 @@ def swap_costs(
         return lost + candidates.price(solution.free) - candidates.price(current.free)
 
     policy = candidates.policy
-    costs = dict.fromkeys(others, cost(near))
+    costs = dict.fromkeys(others, float("inf"))
     scores = candidates.score_all(rest, others, near)
     min_score = policy.search.min_score_share * candidates.price(1)
     # The score includes the gain of the next step of `near` itself.
@@ -226,10 +226,11 @@ def swap_costs(
             # For a wrong model, the residual with the highest likelihood may have a larger RMS.
             costs[name] = float("inf")
             continue
-        # An effect without evidence replaces no other: its fit may be better only because it uses
-        # fewer samples.
-        gains = evidence_on_common_samples(candidates, solution, near) > 0.0
-        costs[name] = cost(solution if gains else near)
+        # Its fit may be better only because it uses fewer samples. The evidence for the current
+        # effect is negative if independent units confirmed it.
+        least = min(cost(near), 0.0)
+        gains = evidence_on_common_samples(candidates, solution, near) > least
+        costs[name] = cost(solution) if gains else float("inf")
     return costs
 
 

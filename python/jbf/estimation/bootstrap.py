@@ -8,9 +8,10 @@ errors of the recorded motion.
 Notes
 -----
 `bootstrap` is parametric (Efron 1979): the fitted model simulates the runs with Gaussian noise of
-the estimated size on friction, speed and angle. `simulated_runs` is a wild bootstrap: its noise is
-the residual of the model with random signs by block (Wu 1986; for blocks: Shao 2010). Size, tails
-and correlation time of the residual are kept, as are the times at which it is large.
+the estimated size on the friction, and errors of speed and position like the recorded ones.
+`simulated_runs` is a wild bootstrap: its noise is the residual of the model with random signs by
+block (Wu 1986; for blocks: Shao 2010). Size, tails and correlation time of the residual are kept,
+as are the times at which it is large.
 """
 
 from __future__ import annotations

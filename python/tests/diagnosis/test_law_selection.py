@@ -148,6 +148,7 @@ def test_viscous_thinning_is_named_although_a_stribeck_curve_that_rises_fits_as_
     assert found.fit.parameters["F_v"].value == pytest.approx(30.0, rel=0.01)
 
 
+@pytest.mark.extended
 def test_stribeck_curve_that_rises_is_selected_if_no_effect_predicts_as_well() -> None:
     """Friction of way lubricants increases from rest to a higher level within a small speed."""
     runs = slide_runs(

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from jbf import Diagnosis, Rig, Run, diagnose, fit
 from jbf.records.drive import Drive
 
@@ -122,6 +123,7 @@ def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
     return replace(made, quantities=DRIVE.quantities)
 
 
+@pytest.mark.extended
 def test_weight_is_identified_in_the_presence_of_a_large_inertia() -> None:
     """A joint search from the starting values of all terms ends at a weight of zero."""
     rng = np.random.default_rng(5)

@@ -86,6 +86,7 @@ def test_signal_during_a_fit_ends_the_process_quietly(tmp_path: Path, name: str)
     assert not (tmp_path / FILE).exists()
 
 
+@pytest.mark.extended
 def test_signal_during_requests_ends_the_process_quietly(tmp_path: Path) -> None:
     ended, answered = threading.Event(), threading.Semaphore(0)
 

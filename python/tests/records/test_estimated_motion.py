@@ -317,6 +317,18 @@ def test_smoothed_onset_of_a_motion_is_not_used_while_the_recorded_speed_is_zero
         assert not np.any(motion.slides[v == 0.0])
 
 
+def test_creep_below_the_resolution_of_the_speed_channel_is_a_motion() -> None:
+    """0.2 mm/s with a speed channel of 1 mm/s, before a start; the encoder resolves the creep."""
+    time_s = 0.01 * np.arange(1600)
+    creep = np.where(time_s < 5.0, 0.0, 2e-4)
+    v = creep + 0.02 * np.clip(time_s - 7.0, 0.0, 1.0) - 0.0202 * np.clip(time_s - 12.0, 0.0, 1.0)
+    motion = estimate_motion(
+        run_of(quantised(v, 1e-3), quantised(integrated(v, 0.01), 1e-6), time_s), None
+    )
+    assert motion.slides[685:700].all()
+    np.testing.assert_allclose(motion.velocity[685:700], 2e-4, atol=4e-5)
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_run_that_begins_with_a_small_oscillation_begins_at_rest(sign: float) -> None:
     alternating = np.where(np.arange(SAMPLES) % 2, -1.0, 1.0)

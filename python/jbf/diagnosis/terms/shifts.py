@@ -165,8 +165,7 @@ def fit_clock_drift(start: Shifted) -> Shifted:
 def _iterate(start: Shifted, advance: Callable[[Shifted], Shifted | None]) -> Shifted:
     """Repeat a joint Gauss-Newton step until it converges in white, then in coloured noise.
 
-    In white noise, a step that increases the residual is discarded. Returns `start` if the residual
-    does not decrease, or if a step returns None.
+    Returns `start` if the residual does not decrease, or if a step returns None.
     """
     # The error due to a delay is autocorrelated and would be attributed to coloured noise.
     now, white = replace(start, solution=replace(start.solution, noise=WHITE)), True
@@ -174,9 +173,7 @@ def _iterate(start: Shifted, advance: Callable[[Shifted], Shifted | None]) -> Sh
         after = advance(now)
         if after is None:
             return start
-        # Friction jumps are not linear in a delay: a step may increase the residual.
-        worse = white and after.solution.rms > now.solution.rms
-        if after is not now and not worse:
+        if after is not now:
             now = after
         elif white:
             now, white = _with_coloured_noise(now), False

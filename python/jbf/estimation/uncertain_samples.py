@@ -151,12 +151,12 @@ def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
     return errors
 
 
-def timing_error_is_small(p: Prepared, residual: Array, least_n: float) -> Mask:
-    """Mask of the samples at which the timing error changes a prediction by at most `least_n`, N.
+def timing_error_is_small(p: Prepared, residual: Array, max_error_n: float) -> Mask:
+    """Mask of the samples at which the timing error changes a prediction by little.
 
-    The timing error is that of the time stamps and of the motion: the standard error of the speed
-    divided by the acceleration, at most that of a uniform instant between two samples. `residual`
-    is record minus prediction. Shape (n,).
+    The change is at most `max_error_n`, N. The timing error is that of the time stamps and of the
+    motion: the standard error of the speed divided by the acceleration, at most that of a uniform
+    instant between two samples. `residual` is record minus prediction. Shape (n,).
     """
     motion, smoothed = p.motion, None if p.motion.errors is None else p.motion.errors.smoothed
     stamp_s = 0.0 if smoothed is None else float(np.sqrt(smoothed.errors.stamp_variance))
@@ -164,7 +164,7 @@ def timing_error_is_small(p: Prepared, residual: Array, least_n: float) -> Mask:
         of_motion_s = motion.velocity_error_m_s / np.abs(motion.acceleration)
     of_motion_s = np.minimum(np.nan_to_num(of_motion_s), MOST * p.step_s)
     rate_n_s = np.gradient(p.friction - residual, p.run.time_s)
-    mask: Mask = np.hypot(stamp_s, of_motion_s) * np.abs(rate_n_s) <= least_n
+    mask: Mask = np.hypot(stamp_s, of_motion_s) * np.abs(rate_n_s) <= max_error_n
     return mask
 
 

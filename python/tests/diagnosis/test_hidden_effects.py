@@ -73,8 +73,8 @@ def test_every_effect_that_the_records_of_a_bearing_can_show_is_tried() -> None:
 def test_simulated_delay_is_named_together_with_a_resonance_of_the_drive() -> None:
     rig, runs, truth = campaign(202, ("drive_compliance", "time_delay"))
     found = diagnose(rig, runs)
-    expected = ("missing", ("drive_compliance", "time_delay"))
-    assert (found.verdict, found.effects) == expected, found.summary()
+    assert found.verdict == "missing", found.summary()
+    assert set(found.effects) == {"drive_compliance", "time_delay"}
     assert found.steps[-1].rms < 1.05 * truth["noise_n"]
 
 

@@ -317,6 +317,14 @@ def test_smoothed_onset_of_a_motion_is_not_used_while_the_recorded_speed_is_zero
         assert not np.any(motion.slides[v == 0.0])
 
 
+def test_first_sample_of_a_motion_that_begins_at_zero_speed_has_no_direction() -> None:
+    """Speed and position without noise: the smoothed first speed exceeds its standard error."""
+    v = 0.05 * np.sin(0.25 * np.pi * TIME_S) ** 2 * (1.0 + np.sin(0.7 * TIME_S + 1.0))
+    motion = estimate_motion(run_of(v, integrated(v, STEP_S)), None)
+    assert not motion.slides[0]
+    assert motion.slides[5:100].all()
+
+
 def test_creep_below_the_resolution_of_the_speed_channel_is_a_motion() -> None:
     """0.2 mm/s with a speed channel of 1 mm/s, before a start; the encoder resolves the creep."""
     time_s = 0.01 * np.arange(1600)

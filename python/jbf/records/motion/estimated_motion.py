@@ -262,8 +262,7 @@ def estimate_motion(
     records = corrected_records(run, radius_m, stamps_s)
     time, path, speed, step = run.time_s, records.path, records.speed, records.step
     n = len(time)
-    zero_speed = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
-    rest = zero_speed.copy()
+    rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
     if path is not None:
         rest |= still_samples(time, path, speed, step, records.hum)
     readings = _readings(records, time, rest)
@@ -291,8 +290,10 @@ def estimate_motion(
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
     # The smoother spreads starts and stops into rests. Where the recorded speed is zero, although
     # its quantisation would resolve the smoothed speed, the direction is unknown.
-    resolved = np.abs(velocity) > np.sqrt(3.0 * readings.velocity_floor)
-    sign_known &= (contradiction == 0.0) & ~(moves_in_rest & zero_speed & resolved)
+    if records.speed_measured:
+        resolved = np.abs(velocity) > np.sqrt(3.0 * readings.velocity_floor)
+        sign_known &= ~((speed == 0.0) & resolved)
+    sign_known &= contradiction == 0.0
     sign_known &= ~rest_edges(rest, time, velocity, acceleration)
     sign_known &= ~backward_near_rest(rest, time, velocity, acceleration) & ~records.loose
     if path is not None and not records.speed_measured:

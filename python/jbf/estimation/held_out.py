@@ -16,6 +16,7 @@ from jbf.arrays import Array, Mask
 from jbf.estimation.approach import null_or_start
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.least_squares import triangular
+from jbf.estimation.levenberg_marquardt import bounded_step
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import NEAR_MINIMUM, search
@@ -117,16 +118,15 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
-    factors = []
-    for i in range(count):  # one run at a time: a Jacobian may be computed on demand
-        r, j = solution.samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
-        factors.append((*triangular(r, j), len(r)))
+    factors = _factors(solution, solution.samples)
     squares = _squares(solution)
     parts = []
     for group in _groups(problem.campaign):
         rest = [k for k in range(count) if k not in group]
         identified = _identified(solution, squares, squares[rest])
-        residuals = _predicted(problem, solution, factors, group, rest, identified)
+        kept = solution.samples.only(rest)
+        of_rest = [factors[i] for i in rest]
+        residuals = _predicted(problem, solution, kept, rest, of_rest, group, identified)
         masks = tuple(np.ones(len(r), dtype=bool) for r in residuals)
         parts.append(HeldOutPart(tuple(group), masks, identified, tuple(residuals)))
     return parts
@@ -168,11 +168,7 @@ def held_out_halves(
         kept = samples.within([*complete[:run], ~half, *complete[run + 1 :]])
         of_half = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
         identified = _identified(solution, squares, (others + of_half)[None])
-        held = _held(problem, ~identified)
-        part = problem.restricted(problem.campaign, held)
-        values = _fitted(part, kept, _at(problem, solution, held), solution)
-        residuals = tuple(problem.residuals(values, [run]))
-        parts.append(HeldOutPart((run,), (half,), identified, residuals))
+        parts.append(_held_out_half(problem, solution, run, half, kept, identified))
     return parts
 
 
@@ -193,44 +189,60 @@ def _identified(solution: Solution, squares: Array, rest: Array) -> Mask:
     return ~unidentified
 
 
-def _step(factors: Sequence[tuple[Array, Array, int]], rest: list[int]) -> tuple[Array, float]:
-    """Gauss-Newton step to the fit of the runs `rest`, and its square relative to noise.
+def _factors(solution: Solution, samples: Samples) -> list[tuple[Array, Array, int]]:
+    """Innovations and derivatives of each run in triangular form, and the number of innovations.
 
-    `factors` has, for each run, its innovations and derivatives in triangular form (`triangular`),
-    and the number of innovations.
+    A Jacobian may be computed on demand, for one run at a time.
     """
-    r, j = (np.concatenate([factors[i][k] for i in rest]) for k in (0, 1))
-    step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
+    factors = []
+    for i in range(len(samples.counted)):
+        r, j = samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+        factors.append((*triangular(r, j), len(r)))
+    return factors
+
+
+def _step(
+    problem: Problem, solution: Solution, factors: Sequence[tuple[Array, Array, int]]
+) -> tuple[Array, float]:
+    """Gauss-Newton step within the bounds from a solution, and its square relative to noise.
+
+    `factors` are those of the samples that the step fits (`_factors`).
+    """
+    r, j = (np.concatenate([f[k] for f in factors]) for k in (0, 1))
+    x = problem.encode(solution.values)
+    low, high = problem.encode(problem.lower) - x, problem.encode(problem.upper) - x
+    step = bounded_step(r, j, np.linalg.norm(j, axis=0), (low, high))
     change = j @ step
-    count = max(sum(factors[i][2] for i in rest), 1)
-    return np.asarray(step), float(change @ change) * count / max(float(r @ r), 1e-300)
+    count = max(sum(f[2] for f in factors), 1)
+    return step, float(change @ change) * count / max(float(r @ r), 1e-300)
 
 
 def _predicted(
     problem: Problem,
     solution: Solution,
+    kept: Samples,
+    rest: list[int],
     factors: Sequence[tuple[Array, Array, int]],
     group: list[int],
-    rest: list[int],
     identified: Mask,
 ) -> list[Array]:
-    """Residuals, N, of a group of held-out runs after a fit to the runs `rest`."""
+    """Residuals, N, of the runs `group` after a fit to the samples `kept` of the runs `rest`.
+
+    `factors` are those of these samples, one entry per run in `rest`.
+    """
     held = _held(problem, ~identified)
     start = _at(problem, solution, held)
     step: Array | None = None
     if not held:
-        step_x, square = _step(factors, rest)
-        target = problem.encode(solution.values) + step_x
-        step = problem.decode(target, solution.values)
-        inside = np.allclose(problem.encode(step), target, rtol=0.0, atol=1e-9)
-        # With many maxima of the likelihood, a fit to the remaining runs may reach another one.
+        step_x, square = _step(problem, solution, factors)
+        step = problem.decode(problem.encode(solution.values) + step_x, solution.values)
+        # With many maxima of the likelihood, a fit to the kept samples may reach another one.
         smooth = solution.converged and not any(find_effect(e).peaks for e in solution.effects)
-        if inside and smooth and square <= SHORT**2 * len(step_x):
+        if smooth and square <= SHORT**2 * len(step_x):
             residuals = problem.residuals(step, group)
             if _straight(solution, step_x, group, residuals):
                 return residuals
     part = problem.restricted(problem.campaign.only(rest), held)
-    kept = solution.samples.only(rest)
     if step is not None:
         # The solution of a law that fits badly is not a reliable starting point.
         start = min((step, start), key=lambda v: part.square(v, kept))
@@ -296,10 +308,18 @@ def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     parts = []
     for half in (~first, first):
         kept = solution.samples.within([~half])
-        values = _fitted(problem, kept, solution.values, solution)
         identified = np.ones(solution.free, dtype=bool)
-        parts.append(HeldOutPart((0,), (half,), identified, tuple(problem.residuals(values))))
+        parts.append(_held_out_half(problem, solution, 0, half, kept, identified))
     return parts
+
+
+def _held_out_half(
+    problem: Problem, solution: Solution, run: int, half: Mask, kept: Samples, identified: Mask
+) -> HeldOutPart:
+    """Hold out half of a run, and predict it from the samples `kept` of all runs."""
+    every, factors = list(range(len(kept.counted))), _factors(solution, kept)
+    residuals = _predicted(problem, solution, kept, every, factors, [run], identified)
+    return HeldOutPart((run,), (half,), identified, tuple(residuals))
 
 
 def alternate_parts(count: int, parts: int) -> Mask:

@@ -106,7 +106,7 @@ def minimise(
         norms = np.maximum(norms, np.linalg.norm(factor, axis=0))
         square = float(reduced @ reduced)
         within = np.maximum(low - x, -longest), np.minimum(high - x, longest)
-        step = _bounded_step(reduced, factor, damping, norms, within)
+        step = bounded_step(reduced, factor, norms, within, damping)
         linear = reduced - factor @ step
         predicted = square - float(linear @ linear)
         step_is_current, ratio = jacobian_is_current, -1.0
@@ -149,10 +149,14 @@ def minimise(
     return SearchResult(x, bool(converged), message)
 
 
-def _bounded_step(
-    residual: Array, jacobian: Array, damping: float, norms: Array, within: tuple[Array, Array]
+def bounded_step(
+    residual: Array,
+    jacobian: Array,
+    norms: Array,
+    within: tuple[Array, Array],
+    damping: float = 0.0,
 ) -> Array:
-    """Minimum of the damped linear model within an interval of each variable."""
+    """Minimum of a linear model within an interval of each variable, with an optional damping."""
     scale = np.where(norms > 0.0, norms, 1.0)
     damped = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
     target = np.concatenate([residual, np.zeros(len(scale))])

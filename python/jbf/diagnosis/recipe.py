@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from jbf.arrays import Names
@@ -25,7 +26,7 @@ from jbf.diagnosis.experiment_design.next_run import (
     propose_detection_run,
     undetectable_effects,
 )
-from jbf.diagnosis.fit_state import MOTION, Reached
+from jbf.diagnosis.fit_state import Reached
 from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
@@ -49,7 +50,6 @@ from jbf.diagnosis.verdict import (
 from jbf.diagnosis.which_law import (
     SIMPLEST,
     LawTried,
-    comparable,
     followed,
     laws_to_diagnose,
     simpler_law,
@@ -184,13 +184,17 @@ def _diagnose(
     no_law: dict[str, str] = {}
     names: tuple[str, ...] = (law,)
     margin = policy.held_out.no_worse_ratio
+    of_simplest: Candidates | None = None
     if law == AUTO:
-        with_motion_errors = comparable(recorded, clock, policy)
-        laws, no_law = which_law(with_motion_errors, clock, policy, progress)
+        # All laws are compared with the same errors of the motion.
+        compared = recorded
+        if rig.bearing is None:
+            with suppress(Unfinished):
+                of_simplest = _candidates(recorded, SIMPLEST, clock, policy, progress)
+                compared = of_simplest.campaign
+        laws, no_law = which_law(compared, clock, policy, progress)
         names = laws_to_diagnose(laws)
-        margin = max(
-            margin, (1.0 + policy.least_effect_share(with_motion_errors.motion_share)) ** 0.5
-        )
+        margin = max(margin, (1.0 + policy.least_effect_share(compared.motion_share)) ** 0.5)
     best: Diagnosis | None = None
     queue, evaluated, diagnosed = list(names), {t.law for t in laws}, set[str]()
     while queue:
@@ -200,11 +204,11 @@ def _diagnose(
         simplest = best is not None and name == SIMPLEST
         if not (best is None or simplest or may_predict_better(name, best, laws, margin)):
             continue
-        campaign = replace(recorded, work=recorded.work.part(1.0))
         try:
-            answer, simplest_suffices = _with_law(
-                campaign, name, clock, limits, policy, progress, reached, given=law != AUTO
-            )
+            candidates = of_simplest if name == SIMPLEST else None
+            candidates = candidates or _candidates(recorded, name, clock, policy, progress)
+            candidates.reached = reached
+            answer, simplest_suffices = _with_law(candidates, recorded, limits, given=law != AUTO)
         except Unfinished as stop:
             if best is None and not queue:
                 raise
@@ -230,16 +234,17 @@ def _diagnose(
     )
 
 
+def _candidates(
+    recorded: Campaign, law: str, clock: Clock, policy: Policy, progress: Progress | None
+) -> Candidates:
+    """Candidates of a law without its initial-state transients, with errors of the motion."""
+    campaign = replace(recorded, work=recorded.work.part(1.0))
+    campaign = without_transients(campaign, law, clock)
+    return with_errors_of_motion(Candidates(campaign, law, clock, policy, progress))
+
+
 def _with_law(
-    recorded: Campaign,
-    law: str,
-    clock: Clock,
-    limits: Limits | None,
-    policy: Policy,
-    progress: Progress | None,
-    reached: Reached,
-    *,
-    given: bool,
+    candidates: Candidates, recorded: Campaign, limits: Limits | None, *, given: bool
 ) -> tuple[Diagnosis, bool]:
     """Diagnose the runs with one law; if the user chose it (`given`), also find a simpler one.
 
@@ -247,14 +252,7 @@ def _with_law(
     False for a given law.
     """
     begun = time.monotonic()
-    campaign = without_transients(recorded, law, clock)
-    candidates = Candidates(campaign, law, clock, policy, progress)
-    candidates.reached = reached
-    with_motion_errors = with_errors_of_motion(candidates)
-    if with_motion_errors is not None:
-        candidates = candidates.with_campaign(with_motion_errors)
-        # They were estimated with all machine terms, and are not estimated again without these.
-        candidates.fitted(start_model(candidates)).proposals[MOTION] = None
+    clock, policy = candidates.clock, candidates.policy
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, of_selection = selected.present, selected.steps, selected.remainders

@@ -19,8 +19,8 @@ from scipy import special
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
+from jbf.diagnosis.fit_state import MOTION
 from jbf.estimation.approach import many_peaks
-from jbf.estimation.campaign import Campaign
 from jbf.estimation.generalised_least_squares import likeliest_with_motion_errors
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
@@ -65,22 +65,24 @@ def machine_terms(candidates: Candidates) -> Names:
     return present
 
 
-def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
-    """Return the campaign with the covariance of the motion's errors in the likelihood.
+def with_errors_of_motion(candidates: Candidates) -> Candidates:
+    """Add the covariance of the motion's errors to the likelihood of the candidates.
 
     The errors are estimated with all machine terms, since a fit that neglects them may reject an
-    inertia. The force is corrected by a time delay common to all runs. Returns None for a bearing,
-    or if these errors are negligible.
+    inertia, and not again without these. The force is corrected by a time delay common to all runs.
+    Returns the same candidates for a bearing, or if these errors are negligible.
     """
     if candidates.campaign.rig.bearing is not None:
-        return None
+        return candidates
     terms = machine_terms(candidates)
     problem, solution = candidates.fitted(terms).problem, candidates.converge(terms)
     problem, solution = likeliest_with_motion_errors(problem, solution)
     if solution.samples.motion is None:
-        return None
-    campaign = problem.campaign
-    return replace(campaign, samples=replace(campaign.samples, motion=solution.samples.motion))
+        return candidates
+    samples = replace(problem.campaign.samples, motion=solution.samples.motion)
+    candidates = candidates.with_campaign(replace(problem.campaign, samples=samples))
+    candidates.fitted(start_model(candidates)).proposals[MOTION] = None
+    return candidates
 
 
 def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:

@@ -17,7 +17,7 @@ import numpy as np
 from jbf.arrays import Array, Mask
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.review import MACHINE_TERMS, with_errors_of_motion
+from jbf.diagnosis.review import MACHINE_TERMS
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.samples import Samples
@@ -113,21 +113,6 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
             continue
         resolved.append(name)
     return resolved, refused
-
-
-def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
-    """Return the campaign with the errors of the motion estimated under the simplest law.
-
-    All laws are then compared with the same motion errors.
-    """
-    if campaign.rig.bearing is not None:
-        return campaign
-    separate = replace(campaign, work=campaign.work.part(1.0))
-    candidates = Candidates(separate, SIMPLEST, clock, policy)
-    try:
-        return with_errors_of_motion(candidates) or campaign
-    except Unfinished:
-        return campaign
 
 
 def which_law(

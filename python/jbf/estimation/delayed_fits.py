@@ -19,6 +19,7 @@ from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.least_squares import triangular, unexplained_square
 from jbf.estimation.minimum import huber
 from jbf.estimation.noise import WHITE
+from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import corrected_for_delay, estimate_motion_errors, shifted
 from jbf.estimation.problem import Problem
@@ -103,7 +104,7 @@ def fits_on_clocks(
     settings = first.campaign.settings.motion
     if TAU in first.names or not first.campaign.force_has_clock:
         return fits
-    shares = [fit.motion.variance_share(fit.solution.samples.weight) for fit in fits]
+    shares = [_largest_share(fit) for fit in fits]
     tested = [
         k
         for k, (fit, share) in enumerate(zip(fits, shares, strict=True))
@@ -129,6 +130,16 @@ def fits_on_clocks(
         if explains and gain >= settings.min_delay_sigma**2:
             fits[k] = end
     return fits
+
+
+def _largest_share(fit: DelayedFit) -> float:
+    """Share of the motion's errors in the mean variance if the noise is that of the record alone.
+
+    The residual also contains the error of a wrong delay.
+    """
+    samples, motion = fit.solution.samples, fit.motion
+    noise = noise_floor(fit.problem.campaign.prepared, samples) or motion.noise
+    return replace(motion, noise=min(motion.noise, noise)).variance_share(samples.weight)
 
 
 def likeliest(fits: Iterable[DelayedFit]) -> DelayedFit:

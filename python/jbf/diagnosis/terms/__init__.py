@@ -82,8 +82,9 @@ def best_term_update(
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
     `min_evidence` is the evidence of an accepted effect: only the terms `COMPETING` are tried, and
-    they must have more. If it is None, all terms are tried, a random effect that is no longer
-    significant is removed, and an effect may replace errors of the motion. None if no term changes.
+    an effect in place of a delay of more than a sampling interval; they must have more. If it is
+    None, all terms are tried, a random effect that is no longer significant is removed, and an
+    effect may replace errors of the motion. None if no term changes.
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
@@ -93,7 +94,7 @@ def best_term_update(
     if explained and min_evidence is None:
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
         estimates.append((delays(reduced), reduced))
-    if min_evidence is None:
+    if min_evidence is None or _delay_in_steps(candidates.campaign) > 1.0:
         estimates.append((_effect_instead_of_errors(candidates, present), full))
     proposals = [(p, model) for p, model in estimates if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
@@ -118,7 +119,8 @@ def _effect_instead_of_errors(candidates: Candidates, present: Names) -> Proposa
     A lag of the sensor, play or compliance delays the force. With a delay corrected, or with large
     errors of the acceleration, little of their influence remains. The effect that fits best without
     these is proposed with errors estimated again. None if the errors are small without a delay, if
-    no residual structure remains, or if the effect may describe errors of the motion only.
+    no residual structure remains with a delay of at most one sampling interval, or if the effect
+    leaves a part of the delay and may describe errors of the motion only.
     """
     fitted, campaign = candidates.fitted(present), candidates.campaign
     if INSTEAD_OF_ERRORS not in fitted.proposals:
@@ -127,21 +129,33 @@ def _effect_instead_of_errors(candidates: Candidates, present: Names) -> Proposa
         names = set(candidates.addable(rest)) & DISTORTS_FORCE - {DELAY}
         largest_share = campaign.settings.motion.max_small_share
         large = corrected_delay_s(campaign) != 0.0 or campaign.motion_share > largest_share
-        if (large and names and len(rest) < most) and find_residual_structure(
-            full.problem, full.solution, full.policy
+        if (large and names and len(rest) < most) and (
+            _delay_in_steps(campaign) > 1.0
+            or find_residual_structure(full.problem, full.solution, full.policy)
         ):
             models = [_model(candidates, (*rest, name), present) for name in sorted(names)]
             proposal = errors_of_motion(min(models, key=_rms_without_correction))
-        if proposal is not None and may_describe_motion_errors(
-            candidates,
-            set(proposal.problem.effects) - set(rest),
-            proposal.solution.rms,
-            full.solution.rms,
-            proposal.campaign.samples,
-        ):
-            proposal = None
+        if proposal is not None and not _explains_delay(proposal, campaign):
+            samples, added = proposal.campaign.samples, set(proposal.problem.effects) - set(rest)
+            rms, rms_without = proposal.solution.rms, full.solution.rms
+            if may_describe_motion_errors(candidates, added, rms, rms_without, samples):
+                proposal = None
         fitted.proposals[INSTEAD_OF_ERRORS] = proposal
     return fitted.proposals[INSTEAD_OF_ERRORS]
+
+
+def _delay_in_steps(campaign: Campaign) -> float:
+    """Size of the corrected delay common to all runs, in their longest sampling interval."""
+    return abs(corrected_delay_s(campaign)) / max(campaign.samples.steps_s)
+
+
+def _explains_delay(proposal: Proposal, campaign: Campaign) -> bool:
+    """Whether no part of a corrected delay of more than a sampling interval remains.
+
+    A remaining delay in the other direction compensates for a wrong shape of the effect.
+    """
+    remaining = corrected_delay_s(proposal.campaign) * corrected_delay_s(campaign)
+    return _delay_in_steps(campaign) > 1.0 and remaining <= 0.0
 
 
 def _rms_without_correction(model: Model) -> float:

@@ -1,0 +1,57 @@
+"""Force that is late by several samples: a lag of the sensor, or a delay of the channel."""
+
+import numpy as np
+import pytest
+from jbf import Drive, Rig, Run, diagnose
+from known_motions import quantised
+from scipy.signal import lfilter
+
+FINE_S, EVERY = 0.0005, 8
+INERTIA_KG_M2, COULOMB_N_M, VISCOUS_N_M_S, WEIGHT_N_M = 0.15, 1.1, 0.25, 2.0
+NOISE_N_M = 0.05
+LAG_S = 0.03
+
+
+def _moved_by_hand(
+    seed: int, late: str, duration_s: float = 6.0, bits: int = 13, noise: float = NOISE_N_M
+) -> Run:
+    """A joint moved by a hand with tremor, with a torque sensor and an encoder of 13 bits.
+
+    The torque is filtered with the time constant `LAG_S` or delayed by it, as `late` states.
+    """
+    random = np.random.default_rng([5312, seed])
+    time_s = np.arange(0.0, duration_s, FINE_S)
+    x, v, a = np.zeros((3, len(time_s)))
+    slow = [(0.7, 0.5 * w, w) for w in random.uniform(0.6, 3.0, 4)]
+    tremor = [(0.5, 6.0, w) for w in 2.0 * np.pi * random.uniform(4.0, 9.0, 6)]
+    for speed, per, omega in (*slow, *tremor):
+        amplitude, phase = speed / max(per, omega / 6.0), random.uniform(0.0, 2.0 * np.pi)
+        x += amplitude / omega * np.sin(omega * time_s + phase)
+        v += amplitude * np.cos(omega * time_s + phase)
+        a -= amplitude * omega * np.sin(omega * time_s + phase)
+    torque = COULOMB_N_M * np.sign(v) + VISCOUS_N_M_S * v + INERTIA_KG_M2 * a
+    torque += WEIGHT_N_M * np.sin(x)
+    if late == "lag":
+        share = -np.expm1(-FINE_S / LAG_S)
+        torque = lfilter([share], [1.0, share - 1.0], torque)
+    else:
+        steps = round(LAG_S / FINE_S)
+        torque = np.concatenate([np.full(steps, torque[0]), torque[:-steps]])
+    kept = slice(round(1.0 / FINE_S), None, EVERY)
+    torque = torque[kept] + noise * random.standard_normal(len(torque[kept]))
+    angle = quantised(x[kept], 2.0 * np.pi / 2**bits)
+    return Run.from_arrays(time_s[kept], None, torque, angle_rad=angle, name=f"hand {seed}")
+
+
+@pytest.mark.parametrize("late", ["lag", "delay"])
+def test_lag_of_the_sensor_is_named_and_a_delay_of_the_channel_is_corrected(late: str) -> None:
+    runs = [_moved_by_hand(seed, late) for seed in range(2)]
+    found = diagnose(Rig(drive=Drive("rotary", "torque")), runs, law="coulomb")
+    assert found.effects == (("sensor_lag",) if late == "lag" else ()), found.summary()
+    values = found.fit.params
+    assert values["inertia.m_e"] == pytest.approx(INERTIA_KG_M2, rel=0.02)
+    assert values["F_c"] == pytest.approx(COULOMB_N_M, rel=0.02)
+    if late == "lag":
+        assert values["sensor_lag.tau_s"] == pytest.approx(LAG_S, rel=0.05)
+    else:
+        assert found.model.force_delay_s == pytest.approx(LAG_S, rel=0.05)

@@ -26,7 +26,7 @@ from jbf.diagnosis.experiment_design.next_run import (
     propose_detection_run,
     undetectable_effects,
 )
-from jbf.diagnosis.fit_state import Reached
+from jbf.diagnosis.fit_state import MOTION, Reached
 from jbf.diagnosis.ledger import SEARCH, Remainder, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
@@ -184,14 +184,14 @@ def _diagnose(
     no_law: dict[str, str] = {}
     names: tuple[str, ...] = (law,)
     margin = policy.held_out.no_worse_ratio
-    of_simplest: Candidates | None = None
+    prepared: dict[str, Candidates] = {}
     if law == AUTO:
         # All laws are compared with the same errors of the motion.
         compared = recorded
         if rig.bearing is None:
             with suppress(Unfinished):
-                of_simplest = _candidates(recorded, SIMPLEST, clock, policy, progress)
-                compared = of_simplest.campaign
+                simplest_law = _candidates(recorded, SIMPLEST, clock, policy, progress, reached)
+                prepared[SIMPLEST], compared = simplest_law, simplest_law.campaign
         laws, no_law = which_law(compared, clock, policy, progress)
         names = laws_to_diagnose(laws)
         margin = max(margin, (1.0 + policy.least_effect_share(compared.motion_share)) ** 0.5)
@@ -205,10 +205,14 @@ def _diagnose(
         if not (best is None or simplest or may_predict_better(name, best, laws, margin)):
             continue
         try:
-            candidates = of_simplest if name == SIMPLEST else None
-            candidates = candidates or _candidates(recorded, name, clock, policy, progress)
-            candidates.reached = reached
-            answer, simplest_suffices = _with_law(candidates, recorded, limits, given=law != AUTO)
+            answer, simplest_suffices = _with_law(
+                prepared.pop(name)
+                if name in prepared
+                else _candidates(recorded, name, clock, policy, progress, reached),
+                recorded,
+                limits,
+                given=law != AUTO,
+            )
         except Unfinished as stop:
             if best is None and not queue:
                 raise
@@ -235,12 +239,19 @@ def _diagnose(
 
 
 def _candidates(
-    recorded: Campaign, law: str, clock: Clock, policy: Policy, progress: Progress | None
+    recorded: Campaign,
+    law: str,
+    clock: Clock,
+    policy: Policy,
+    progress: Progress | None,
+    reached: Reached,
 ) -> Candidates:
     """Candidates of a law without its initial-state transients, with errors of the motion."""
     campaign = replace(recorded, work=recorded.work.part(1.0))
     campaign = without_transients(campaign, law, clock)
-    return with_errors_of_motion(Candidates(campaign, law, clock, policy, progress))
+    candidates = Candidates(campaign, law, clock, policy, progress)
+    candidates.reached = reached
+    return with_errors_of_motion(candidates)
 
 
 def _with_law(
@@ -253,6 +264,9 @@ def _with_law(
     """
     begun = time.monotonic()
     clock, policy = candidates.clock, candidates.policy
+    if candidates.campaign.samples.motion is not None:
+        # Errors estimated with all machine terms are not estimated again with the needed ones.
+        candidates.fitted(start_model(candidates)).proposals[MOTION] = None
     selected = select(candidates)
     candidates, campaign = selected.candidates, selected.candidates.campaign
     present, steps, of_selection = selected.present, selected.steps, selected.remainders

@@ -19,7 +19,6 @@ from scipy import special
 from jbf.arrays import Names
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
-from jbf.diagnosis.fit_state import MOTION
 from jbf.estimation.approach import many_peaks
 from jbf.estimation.generalised_least_squares import likeliest_with_motion_errors
 from jbf.estimation.likelihood import likelihood_gain, next_step_gain
@@ -69,8 +68,8 @@ def with_errors_of_motion(candidates: Candidates) -> Candidates:
     """Add the covariance of the motion's errors to the likelihood of the candidates.
 
     The errors are estimated with all machine terms, since a fit that neglects them may reject an
-    inertia, and not again without these. The force is corrected by a time delay common to all runs.
-    Returns the same candidates for a bearing, or if these errors are negligible.
+    inertia. The force is corrected by a time delay common to all runs. Returns the same candidates
+    for a bearing, or if these errors are negligible.
     """
     if candidates.campaign.rig.bearing is not None:
         return candidates
@@ -80,9 +79,7 @@ def with_errors_of_motion(candidates: Candidates) -> Candidates:
     if solution.samples.motion is None:
         return candidates
     samples = replace(problem.campaign.samples, motion=solution.samples.motion)
-    candidates = candidates.with_campaign(replace(problem.campaign, samples=samples))
-    candidates.fitted(start_model(candidates)).proposals[MOTION] = None
-    return candidates
+    return candidates.with_campaign(replace(problem.campaign, samples=samples))
 
 
 def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:

@@ -186,20 +186,19 @@ class _Selection:
             return False
         least = _evidence_of_leader(candidates, self.present, trial_round)
         update = best_term_update(candidates, self.present, least) if self._may_update else None
-        if update is None and len(self.present) >= candidates.policy.selection.max_effects:
-            return False
-        if update is None:
-            # The errors of the motion, estimated without the effect, contain its force.
-            re_estimated = re_estimated_motion(candidates, (*self.present, leader))
-            if re_estimated is not None and leader in re_estimated.effects:
-                self.candidates = candidates.with_campaign(*re_estimated)
-                self.present = tuple(n for n in self.present if n in re_estimated.effects)
-                self._forget()
-            elif self._may_update:
-                update = re_estimated  # the leader is `time_delay`: its delay is corrected
-        if update is not None:
-            self._update_terms(update, add_more=False)
+        if update is not None and self._update_terms(update, add_more=False):
             return True
+        if len(self.present) >= candidates.policy.selection.max_effects:
+            return False
+        # The errors of the motion, estimated without the effect, contain its force.
+        re_estimated = re_estimated_motion(candidates, (*self.present, leader))
+        if re_estimated is not None and leader in re_estimated.effects:
+            self.candidates = candidates.with_campaign(*re_estimated)
+            self.present = tuple(n for n in self.present if n in re_estimated.effects)
+            self._forget()
+        elif re_estimated is not None and self._may_update:
+            # The leader is `time_delay`: its delay is corrected.
+            return self._update_terms(re_estimated, add_more=False)
         return self._extend(_with_leader(self.candidates, self.present, trial_round))
 
     def _add_terms(self) -> bool:

@@ -19,7 +19,6 @@ from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.least_squares import triangular, unexplained_square
 from jbf.estimation.minimum import huber
 from jbf.estimation.noise import WHITE
-from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.posterior_motions import corrected_for_delay, estimate_motion_errors, shifted
 from jbf.estimation.problem import Problem
@@ -104,15 +103,14 @@ def fits_on_clocks(
     settings = first.campaign.settings.motion
     if TAU in first.names or not first.campaign.force_has_clock:
         return fits
-    shares = [_largest_share(fit) for fit in fits]
+    # Without the delay, the residual may be many times the noise, and the inertia wrong.
+    start = _likeliest_delay(first.thinned, fits[0].solution, at_once)
+    share = start.motion.variance_share(start.solution.samples.weight)
     tested = [
-        k
-        for k, (fit, share) in enumerate(zip(fits, shares, strict=True))
-        if fit.delay_s != 0.0 or share >= settings.min_delay_share
+        k for k, fit in enumerate(fits) if fit.delay_s != 0.0 or share >= settings.min_delay_share
     ]
     if not tested:
         return fits
-    start = _likeliest_delay(first.thinned, fits[0].solution, at_once)
     if first.thinned is not first:
         (start,) = _fits_at_same_readings(first, fits[0].solution, [start.delay_s], at_once)
     delay_s, sd_s = _fixed_point_delay(start)
@@ -130,16 +128,6 @@ def fits_on_clocks(
         if explains and gain >= settings.min_delay_sigma**2:
             fits[k] = end
     return fits
-
-
-def _largest_share(fit: DelayedFit) -> float:
-    """Share of the motion's errors in the mean variance if the noise is that of the record alone.
-
-    The residual also contains the error of a wrong delay.
-    """
-    samples, motion = fit.solution.samples, fit.motion
-    noise = noise_floor(fit.problem.campaign.prepared, samples) or motion.noise
-    return replace(motion, noise=min(motion.noise, noise)).variance_share(samples.weight)
 
 
 def likeliest(fits: Iterable[DelayedFit]) -> DelayedFit:

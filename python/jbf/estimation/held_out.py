@@ -24,7 +24,7 @@ from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
 EVALUATIONS = 12
-"""Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs."""
+"""Evaluations of a refit by a search."""
 SHORT = 3.0
 """Length of a step per parameter, in standard deviations, that is accepted without a search.
 
@@ -33,6 +33,8 @@ longer step.
 """
 STRAIGHT = 0.05
 """Deviation from linearity, as a fraction of a change, up to which one step suffices."""
+UNDETERMINED = 1e-10
+"""Damping of the step: the kept samples may not determine a combination of parameters."""
 NOTHING = 0.01
 """Fraction of the residual below which the error of a prediction is negligible."""
 
@@ -211,7 +213,7 @@ def _step(
     r, j = (np.concatenate([f[k] for f in factors]) for k in (0, 1))
     x = problem.encode(solution.values)
     low, high = problem.encode(problem.lower) - x, problem.encode(problem.upper) - x
-    step = bounded_step(r, j, np.linalg.norm(j, axis=0), (low, high))
+    step = bounded_step(r, j, np.linalg.norm(j, axis=0), (low, high), UNDETERMINED)
     change = j @ step
     count = max(sum(f[2] for f in factors), 1)
     return step, float(change @ change) * count / max(float(r @ r), 1e-300)
@@ -317,8 +319,8 @@ def _held_out_half(
     problem: Problem, solution: Solution, run: int, half: Mask, kept: Samples, identified: Mask
 ) -> HeldOutPart:
     """Hold out half of a run, and predict it from the samples `kept` of all runs."""
-    every, factors = list(range(len(kept.counted))), _factors(solution, kept)
-    residuals = _predicted(problem, solution, kept, every, factors, [run], identified)
+    all_runs, factors = list(range(len(kept.counted))), _factors(solution, kept)
+    residuals = _predicted(problem, solution, kept, all_runs, factors, [run], identified)
     return HeldOutPart((run,), (half,), identified, tuple(residuals))
 
 

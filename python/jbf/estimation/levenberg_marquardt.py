@@ -154,9 +154,13 @@ def bounded_step(
     jacobian: Array,
     norms: Array,
     within: tuple[Array, Array],
-    damping: float = 0.0,
+    damping: float,
 ) -> Array:
-    """Minimum of a linear model within an interval of each variable, with an optional damping."""
+    """Minimum of the damped linear model within an interval of each variable.
+
+    The damping is relative to the squares of `norms`. It must be positive where the data may not
+    determine all variables.
+    """
     scale = np.where(norms > 0.0, norms, 1.0)
     damped = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
     target = np.concatenate([residual, np.zeros(len(scale))])

@@ -303,7 +303,7 @@ class MotionSettings:
     )
     min_delay_share: float = documented(
         1e-3,
-        "share of the variance, at the record's own noise, from which a common delay is corrected",
+        "share of the mean variance, with a delay, below which it is not attributed to the clocks",
         "the motion is exact: the model lacks an effect",
     )
     min_noise_share: float = documented(

@@ -12,20 +12,18 @@ NOISE_N_M = 0.05
 LAG_S = 0.03
 
 
-def _moved_by_hand(
-    seed: int, late: str, duration_s: float = 6.0, bits: int = 13, noise: float = NOISE_N_M
-) -> Run:
+def _moved_by_hand(seed: int, late: str) -> Run:
     """A joint moved by a hand with tremor, with a torque sensor and an encoder of 13 bits.
 
     The torque is filtered with the time constant `LAG_S` or delayed by it, as `late` states.
     """
     random = np.random.default_rng([5312, seed])
-    time_s = np.arange(0.0, duration_s, FINE_S)
+    time_s = np.arange(0.0, 6.0, FINE_S)
     x, v, a = np.zeros((3, len(time_s)))
-    slow = [(0.7, 0.5 * w, w) for w in random.uniform(0.6, 3.0, 4)]
-    tremor = [(0.5, 6.0, w) for w in 2.0 * np.pi * random.uniform(4.0, 9.0, 6)]
-    for speed, per, omega in (*slow, *tremor):
-        amplitude, phase = speed / max(per, omega / 6.0), random.uniform(0.0, 2.0 * np.pi)
+    slow = [(1.4 / w, w) for w in random.uniform(0.6, 3.0, 4)]
+    tremor = [(3.0 / w, w) for w in 2.0 * np.pi * random.uniform(4.0, 9.0, 6)]
+    for amplitude, omega in (*slow, *tremor):
+        phase = random.uniform(0.0, 2.0 * np.pi)
         x += amplitude / omega * np.sin(omega * time_s + phase)
         v += amplitude * np.cos(omega * time_s + phase)
         a -= amplitude * omega * np.sin(omega * time_s + phase)
@@ -38,8 +36,8 @@ def _moved_by_hand(
         steps = round(LAG_S / FINE_S)
         torque = np.concatenate([np.full(steps, torque[0]), torque[:-steps]])
     kept = slice(round(1.0 / FINE_S), None, EVERY)
-    torque = torque[kept] + noise * random.standard_normal(len(torque[kept]))
-    angle = quantised(x[kept], 2.0 * np.pi / 2**bits)
+    torque = torque[kept] + NOISE_N_M * random.standard_normal(len(torque[kept]))
+    angle = quantised(x[kept], 2.0 * np.pi / 2**13)
     return Run.from_arrays(time_s[kept], None, torque, angle_rad=angle, name=f"hand {seed}")
 
 

@@ -95,6 +95,19 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
     assert rms_of(held_out_by_run(problem, solution)) == pytest.approx(rms, rel=0.01)
 
 
+def test_parameters_that_the_other_runs_do_not_separate_are_not_extrapolated() -> None:
+    """Two speeds of opposite direction do not separate an offset from friction by direction."""
+    runs = []
+    for i, speed in enumerate((0.1, -0.1, 0.3)):
+        time_s = np.arange(0.0, 10.0, 0.02)
+        v = np.full(len(time_s), speed)
+        noise = NOISE_N * np.random.default_rng([2, i]).standard_normal(len(v))
+        runs.append(Run.from_arrays(time_s, v, coulomb(time_s, v, 0.0 * v) + noise, name=f"{i}"))
+    problem, solution = solved(runs, "sensor_offset", "viscous_asymmetry")
+    for errors in held_out_by_run(problem, solution):
+        assert rms_of([errors]) == pytest.approx(NOISE_N, rel=0.1)
+
+
 def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> None:
     """Alternate tenths of the run have an additional 1 N, so that each half has an error of 1 N."""
     run = one_way("only", coulomb, rate=2.0 * np.pi, noise_rms=NOISE_N)

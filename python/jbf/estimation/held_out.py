@@ -33,7 +33,7 @@ longer step.
 """
 STRAIGHT = 0.05
 """Deviation from linearity, as a fraction of a change, up to which one step suffices."""
-UNDETERMINED = 1e-10
+STEP_DAMPING = 1e-10
 """Damping of the step: the kept samples may not determine a combination of parameters."""
 NOTHING = 0.01
 """Fraction of the residual below which the error of a prediction is negligible."""
@@ -213,7 +213,7 @@ def _step(
     r, j = (np.concatenate([f[k] for f in factors]) for k in (0, 1))
     x = problem.encode(solution.values)
     low, high = problem.encode(problem.lower) - x, problem.encode(problem.upper) - x
-    step = bounded_step(r, j, np.linalg.norm(j, axis=0), (low, high), UNDETERMINED)
+    step = bounded_step(r, j, np.linalg.norm(j, axis=0), (low, high), STEP_DAMPING)
     change = j @ step
     count = max(sum(f[2] for f in factors), 1)
     return step, float(change @ change) * count / max(float(r @ r), 1e-300)

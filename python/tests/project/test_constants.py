@@ -49,7 +49,7 @@ NUMERICAL = {
         estimation.bounds: AT_BOUND
         estimation.delays: RANK
         estimation.delayed_fits: SETTLED DELAY_TOLERANCE SETTLED_DELAY
-        estimation.held_out: SHORT STRAIGHT UNDETERMINED NOTHING
+        estimation.held_out: SHORT STRAIGHT STEP_DAMPING NOTHING
         estimation.identifiability: SAME_IN_FRICTION
         estimation.least_squares: INDEPENDENT
         estimation.posterior_motions: EXACT_RECORD RATIO_STEP

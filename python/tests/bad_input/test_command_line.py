@@ -83,7 +83,7 @@ REFUSED = {
 }
 REFUSED_SLOWLY = {
     "option similar to another": (f"{DIAG} --false-alarm 0.1", "did you mean --false-alarm-rate?"),
-    "fix unknown": (f"{FIT} --fix fm=0.2", "--fix fm=0.2: there is no parameter"),
+    "fix unknown": (f"{FIT} --fix fm=0.2", 'did you mean "f_m"'),
     "fix below the bounds": (f"{FIT} --fix f_m=-1", "--fix f_m=-1: is out of range"),
     "law of a model": ("power model.toml a.csv --law coulomb", "--law"),
     "many and a rig": ("diagnose rig.toml --many many", "excludes RIG, RUN and --next-run"),

@@ -1,4 +1,4 @@
-"""A folder with a small campaign, a session on it, and an authorised client."""
+"""A folder with a small campaign, sessions with and without fits, and an authorised client."""
 
 from collections.abc import Iterator
 from importlib.resources import files
@@ -11,8 +11,9 @@ pytest.importorskip("starlette", reason="the workbench's server is an extra")
 from conftest import make_runs
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
+from jbf.workbench.session_file import FILE
 from starlette.testclient import TestClient
-from workbench_parts import client_of
+from workbench_parts import client_of, wait_until_idle
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +44,28 @@ def session(campaign: Path) -> Iterator[Session]:
 def loaded(session: Session, campaign: Path) -> Session:
     session.open("rig.toml", sorted(path.name for path in campaign.glob("*.csv")))
     return session
+
+
+@pytest.fixture(scope="module")
+def fitted_once(campaign: Path) -> Session:
+    """A session with a fit of the base law and a fit with the missing effect."""
+    session = Session(Folder.of(campaign))
+    session.open("rig.toml", sorted(p.name for p in campaign.glob("*.csv")))
+    for effects, parent in (((), None), (("coulomb_drag",), 1)):
+        session.begin("round", effects, parent)
+        wait_until_idle(session)
+    return session
+
+
+@pytest.fixture
+def fitted(fitted_once: Session) -> Iterator[Session]:
+    """The session with both fits; its state is restored after the test."""
+    yield fitted_once
+    fitted_once.on_bench().trim("stopgo", None)
+    fitted_once.on_bench().leave_out("sine_w2.0", False)
+    fitted_once.show(2)
+    for name in ("model.toml", "report.html", FILE):
+        (fitted_once.folder.root / name).unlink(missing_ok=True)
 
 
 @pytest.fixture

@@ -16,6 +16,7 @@ from jbf.diagnosis import Remainder, Step, Trial
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import CHANCE
+from jbf.estimation.noise import WHITE
 
 Array = npt.NDArray[np.float64]
 Friction = Callable[[Array, Array, Array], Array]
@@ -178,7 +179,7 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         failures=before.failures if verdict != "adequate" else (),
         residual_structure=RESIDUAL_STRUCTURE if verdict == "unexplained" else (),
         next_experiment="record a rest" if ties else None,
-        fit=fit_by_hand(effects),
+        fit=replace(fit_by_hand(effects), noise=WHITE),
         before=before,
         after=after if has_effect else before,
         elapsed_s=12.5,

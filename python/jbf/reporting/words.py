@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from statistics import median
 from typing import TYPE_CHECKING
 
 from jbf.models.catalogue import find_law
@@ -64,7 +65,8 @@ def law_and_effects(model: Model) -> str:
 
 UNKNOWN = "unknown"
 SHOWN_SHARE = 0.2
-"""Share of the motion's errors in the mean square error from which a summary states it."""
+"""Share of the motion's errors, or of coloured noise, in the mean square error from which a
+summary states it."""
 
 
 def noise_words(noise_rms: float, unit: str) -> str:
@@ -113,6 +115,7 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
         + drive_sentences(diagnosis)
+        + _coloured_noise_sentence(diagnosis)
         + law_sentence(diagnosis)
     )
 
@@ -166,6 +169,19 @@ def drive_sentences(diagnosis: Diagnosis) -> str:
         if (alternatives := diagnosis.alternatives.get(name, ()))
     ]
     return "".join(f" {sentence}" for sentence in sentences)
+
+
+def _coloured_noise_sentence(diagnosis: Diagnosis) -> str:
+    """State the share of coloured noise in the mean square; empty if it is below `SHOWN_SHARE`."""
+    noise = diagnosis.fit.noise
+    steps_s = [p.step_s for p in diagnosis.after.campaign.prepared]
+    share = noise.coloured_share(median(steps_s))
+    if share < SHOWN_SHARE:
+        return ""
+    return (
+        f" About {100.0 * share:.0f} % of the mean square is noise with a correlation time of "
+        f"{number(noise.memory_s, 2)} s, such as a disturbance or the filter of a sensor causes."
+    )
 
 
 def law_sentence(diagnosis: Diagnosis) -> str:

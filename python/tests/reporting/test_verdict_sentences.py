@@ -9,6 +9,7 @@ from by_hand import TRIALS, diagnosis_by_hand
 from jbf import Diagnosis, Model, Rig
 from jbf.diagnosis import Remainder, Step, Trial
 from jbf.diagnosis.which_law import LawTried
+from jbf.estimation.noise import Noise
 from jbf.models.parameter_value import ParameterValue
 from jbf.reporting import words
 
@@ -191,3 +192,13 @@ def test_verdict_sentence_names_a_simpler_law_unless_laws_were_compared() -> Non
     assert numbers_in(sentence) == [*FALL, 0.543, 0.55]
     chosen = replace(diagnosis, simpler_law=simpler, laws=(LawTried("coulomb", 2, 0.5, True),))
     assert "stribeck" not in words.verdict_sentence(chosen)
+
+
+def test_verdict_states_a_large_share_of_coloured_noise_and_its_correlation_time() -> None:
+    diagnosis = diagnosis_by_hand("adequate")
+    step_s = diagnosis.after.campaign.prepared[0].step_s
+    for share, stated in ((0.1, False), (0.75, True)):
+        noise = Noise(memory_s=0.32).with_share(share, step_s)
+        changed = replace(diagnosis, fit=replace(diagnosis.fit, noise=noise))
+        sentence = words.verdict_sentence(changed)
+        assert ("75 %" in sentence) == ("0.32 s" in sentence) == stated

@@ -124,6 +124,7 @@ impl<T: Real, L: Law<T>> Law<T> for OnPath<'_, T, L> {
 
     const HAS_BRISTLE: bool = L::HAS_BRISTLE;
     const BENDS_WHOLE: bool = L::BENDS_WHOLE;
+    const HAS_STATIC_LEVEL: bool = L::HAS_STATIC_LEVEL;
 
     fn start(&self, load_n: T) -> Self::State {
         (self.law.start(load_n), 0)

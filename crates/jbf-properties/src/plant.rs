@@ -30,6 +30,7 @@ impl<T: Real, L: Law<T>> Law<T> for Counted<L> {
     type State = L::State;
     const HAS_BRISTLE: bool = L::HAS_BRISTLE;
     const BENDS_WHOLE: bool = L::BENDS_WHOLE;
+    const HAS_STATIC_LEVEL: bool = L::HAS_STATIC_LEVEL;
 
     fn start(&self, load_n: T) -> L::State {
         self.0.start(load_n)

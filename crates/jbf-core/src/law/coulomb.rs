@@ -68,6 +68,7 @@ impl<T: Real> Law<T> for Coulomb<T> {
     type State = bool;
 
     const HAS_MEMORY: bool = false;
+    const HAS_STATIC_LEVEL: bool = true;
 
     in_newtons!();
 

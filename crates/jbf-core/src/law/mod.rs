@@ -66,6 +66,9 @@ pub trait Law<T: Real> {
     /// [deflects](Self::HAS_BRISTLE).
     const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
 
+    /// True if friction at rest has its own level, which vanishes as soon as the journal slides.
+    const HAS_STATIC_LEVEL: bool = false;
+
     /// Number of steps between two samples that is sufficient for any sampling interval.
     ///
     /// The number is finite for a law that is stable with any step, because the motion between two

@@ -129,6 +129,32 @@ fn lugre_friction_from_rest_follows_its_closed_form() {
     }
 }
 
+/// Under a rigid drive, a lagging load cell reads the response to a step of F_c after a rest,
+/// because breakaway from F_s takes no time.
+#[test]
+fn reading_of_a_lagging_cell_after_a_rest_is_the_response_to_a_step_of_f_c() {
+    let law = <Coulomb<f64> as Named<f64>>::build(None, None, &[6.0, 9.0, 0.0], Clock::Journal)
+        .expect("valid");
+    let (tau, dt, rest) = (0.03, 0.01, 10);
+    let mut effects = Effects::NONE;
+    effects.set("sensor_lag", &[tau]).expect("valid");
+    let chain = axis(law, effects);
+    let at = |i: i32| {
+        let (t, speed) = (dt * f64::from(i), if i <= rest { 0.0 } else { 0.1 });
+        moving(t, speed, 0.1 * dt * f64::from((i - rest).max(0)))
+    };
+    let mut state = chain.start(&at(0));
+    for i in 1..40 {
+        let reading = chain.step(&mut state, &at(i), dt);
+        let since = dt * f64::from((i - rest).max(0));
+        let expected = 6.0 * (1.0 - (-since / tau).exp());
+        assert!(
+            (reading - expected).abs() < 1e-12,
+            "{i}: {reading} {expected}"
+        );
+    }
+}
+
 /// Static friction holds a journal with a compliant drive up to F_s; then it slides with F_c.
 #[test]
 fn coulomb_friction_behind_a_compliant_drive_sticks_to_f_s_and_slides_at_f_c() {

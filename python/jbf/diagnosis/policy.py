@@ -69,6 +69,7 @@ class Policy:
     ripples: residual.Ripples = field(default_factory=residual.Ripples)
     replicates: residual.Replicates = field(default_factory=residual.Replicates)
     bursts: residual.Bursts = field(default_factory=residual.Bursts)
+    momentum: residual.Momentum = field(default_factory=residual.Momentum)
     constancy: residual.Constancy = field(default_factory=residual.Constancy)
     strokes: residual.Strokes = field(default_factory=residual.Strokes)
     limitations: sections.Limitations = field(default_factory=sections.Limitations)

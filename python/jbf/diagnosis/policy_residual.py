@@ -113,6 +113,23 @@ class Bursts:
 
 
 @dataclass(frozen=True)
+class Momentum:
+    """Thresholds for disturbances found by the balance of momentum."""
+
+    intervals: int = documented(
+        8, "number of sampling intervals of a window", "a disturbance lasts for several samples"
+    )
+    min_sigma: float = documented(
+        6.0,
+        "standard deviations beyond which a balance of momentum is violated",
+        "2.6 to 5.4 in simulated drives without a disturbance",
+    )
+    min_share: float = documented(
+        0.1, "minimum share of the mean square in such windows", "simulated drives with impacts"
+    )
+
+
+@dataclass(frozen=True)
 class Constancy:
     """Thresholds for parameters that differ between runs."""
 

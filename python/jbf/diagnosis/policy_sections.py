@@ -263,6 +263,13 @@ class Motion:
         "a larger share of the variance",
         "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
     )
+    max_scale: float = documented(
+        3.0,
+        "scale of the standard errors of the motion above which the residual contains more than "
+        "errors of the motion",
+        "the standard errors of the smoother are right within a factor of three; 0.4 to 1.1 in "
+        "simulated drives without other structure",
+    )
     max_pattern_ratio: float = documented(
         1.5,
         "ratio of a residual pattern with a motion that is smoothed less, or its reciprocal, above "

@@ -76,6 +76,15 @@ ADVICE = {
         "an impact, a loose cable, a particle in the contact, or contact with the rig",
         "inspect the record at those instants; record the run again",
     ),
+    "momentum": Advice(
+        "an impact, a push, or contact with the rig",
+        "inspect the record at those instants; record the run again",
+    ),
+    "motion": Advice(
+        "a force that no effect describes, such as that of a resonance, or a lower resolution of "
+        "the motion than its readings show",
+        "record the motion with a finer encoder or a higher rate",
+    ),
     "way": Advice(
         "a periodic force of rack, ball, magnet or tooth whose phase differs between runs",
         "reference the position, so that all runs have the same origin",

@@ -43,6 +43,8 @@ PLOTTED_AXES = ("time", "run", "angle", "velocity", "speed range", "regime", "di
 TITLES = {
     "frequency": "Spectral lines",
     "bursts": "In bursts",
+    "momentum": "Disturbances",
+    "motion": "More than errors of the motion",
     "way": "Periodic in the position",
     "period": "Periodic in time",
     "stroke": "Variation between strokes",

@@ -154,11 +154,13 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
 def drive_sentences(diagnosis: Diagnosis) -> str:
     """State the share of the motion's errors, and effects that fit as well as a machine term.
 
-    Empty if the share is below `SHOWN_SHARE` and no effect does.
+    Empty if the share is below `SHOWN_SHARE` and no effect does. The share is not known if the
+    residual contains forces that the errors of the motion were enlarged to explain.
     """
     samples, sentences = diagnosis.after.samples, []
     share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
-    if samples.motion is not None and share >= SHOWN_SHARE:
+    enlarged = any(r.axis in ("motion", "momentum") for r in diagnosis.residual_structure)
+    if samples.motion is not None and share >= SHOWN_SHARE and not enlarged:
         if not diagnosis.residual_structure:  # the residual has no other part
             share = max(share, 1.0 - (samples.motion.noise / diagnosis.steps[-1].rms) ** 2)
         percent = f"{100.0 * share:.0f} %"

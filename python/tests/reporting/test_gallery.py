@@ -104,6 +104,8 @@ def test_simulated_pattern_is_attributed_to_the_hidden_effect_that_removes_it() 
         ("run", "time_delay does not improve the held-out prediction", "unconfirmed", "Run"),
         ("direction", "forward", "direction", "Direction of motion"),
         ("force", "large", "force", "Force of the model (N)"),
+        ("momentum", "2 disturbances", "momentum", "Time (s)"),
+        ("motion", "too large", "motion", "Time (s)"),
         ("stroke", "each", "stroke", "Time (s)"),
         ("parameters", "disagree", "parameters", "Time (s)"),
     ],
@@ -122,7 +124,8 @@ def test_card_of_a_residual_structure_has_its_plot_share_and_advice(
 
 def test_every_axis_and_kind_of_residual_structure_has_advice_text() -> None:
     kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects", "search"}
-    assert set(ADVICE) == {*get_args(Axis), *kinds, "unconfirmed"}
+    kinds |= {"unconfirmed", "momentum", "motion"}
+    assert set(ADVICE) == {*get_args(Axis), *kinds}
     assert advice_on("nothing known") is NONE
 
 

@@ -2,8 +2,8 @@
 
 This module tests for patterns along an axis and combines all tests. `periodic` tests for tones,
 ripples over the travel, and errors that repeat with the motion. `bursts` tests for structure at
-isolated instants. `constancy` tests whether all runs have the same parameters, and all strokes the
-same friction level.
+isolated instants, and `momentum` for disturbances that act for several samples. `constancy` tests
+whether all runs have the same parameters, and all strokes the same friction level.
 
 All tests use innovations, the residuals whitened by the noise model, so that coloured noise is not
 reported as structure. A pattern is reported if it is both significant and large enough to be
@@ -25,6 +25,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.residual_structure.bursts import find_bursts
 from jbf.diagnosis.residual_structure.constancy import find_disagreement, find_stroke_levels
+from jbf.diagnosis.residual_structure.momentum import find_disturbances
 from jbf.diagnosis.residual_structure.periodic import find_replicates, find_ripples, find_tones
 from jbf.estimation.generalised_least_squares import with_less_smoothing
 from jbf.estimation.problem import Problem
@@ -42,7 +43,7 @@ def find_residual_structure(
     The largest share of the mean square is first. Smoothing biases an estimated motion where the
     acceleration changes fast. The model is therefore refitted with a motion that is smoothed less,
     and a pattern or a tone that changes by more than `policy.motion.max_pattern_ratio` is not
-    returned.
+    returned. The scale of the motion's errors is structure if it exceeds `policy.motion.max_scale`.
     """
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
@@ -66,8 +67,9 @@ def find_residual_structure(
         timing_error_is_small(p, r, solution.rms)
         for p, r in zip(prepared, solution.residuals, strict=True)
     ]
-    tested = samples.with_known_motion().within(certain)
+    tested = samples.within(certain)
     structure += find_bursts(prepared, tested, plain, residuals, policy)
+    structure += find_disturbances(prepared, tested, residuals, policy)
     structure += find_disagreement(problem, solution, policy)
     structure += find_stroke_levels(problem, solution, policy)
     # Coarse quantisation biases mean readings along any axis and in each run.
@@ -76,6 +78,13 @@ def find_residual_structure(
     if samples.motion is not None:
         least = policy.least_share(problem.campaign.motion_share)
         structure = [r for r in structure if r.share >= least]
+        if samples.motion.scale > policy.motion.max_scale:
+            where = (
+                "errors of the estimated motion would have to be "
+                f"{samples.motion.scale:.1f} times their standard errors"
+            )
+            share = samples.motion.variance_share(samples.weight)
+            structure.append(Remainder("motion", where, share))
     return tuple(sorted(structure, key=lambda r: -r.share))
 
 

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import special
 
-from jbf.arrays import Array
+from jbf.arrays import Array, Mask
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.prepared import Prepared
@@ -60,20 +60,48 @@ def find_bursts(
         return []
     if _lasting_chance(innovations, samples, sigma, policy) > policy.bursts.chance:
         return []
-    bursts: list[tuple[float, float, str]] = []
-    for e, r, counted, p in zip(innovations, residuals, samples.counted, prepared, strict=True):
-        index = np.flatnonzero((np.abs(e) > policy.bursts.min_sigma * sigma) & counted)
+    where = [
+        (np.abs(e) > policy.bursts.min_sigma * sigma) & counted
+        for e, counted in zip(innovations, samples.counted, strict=True)
+    ]
+    return [described("time", "burst", prepared, residuals, where, share)]
+
+
+def described(
+    axis: str,
+    noun: str,
+    prepared: Sequence[Prepared],
+    residuals: Sequence[Array],
+    where: Sequence[Mask],
+    share: float,
+) -> Remainder:
+    """Describe structure at isolated instants: number, largest size, and largest instants.
+
+    Parameters
+    ----------
+    axis, noun
+        Kind of structure, and the name of one such structure.
+    residuals
+        Record minus prediction, N, one array per run.
+    where
+        Whether a sample belongs to the structure, one array per run.
+    share
+        Share of the mean square of the residual.
+    """
+    places: list[tuple[float, float, str]] = []
+    for r, within, p in zip(residuals, where, prepared, strict=True):
+        index = np.flatnonzero(within)
         time = p.run.time_s[index]
         for group in np.split(index, np.flatnonzero(np.diff(time) > APART_S) + 1):
             if len(group):
                 top = int(group[np.argmax(np.abs(r[group]))])
-                bursts.append((abs(float(r[top])), float(p.run.time_s[top]), p.run.name))
-    bursts.sort(reverse=True)
-    largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in bursts[:NAMED])
+                places.append((abs(float(r[top])), float(p.run.time_s[top]), p.run.name))
+    places.sort(reverse=True)
+    largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in places[:NAMED])
     unit = prepared[0].run.quantities.force
-    size = "of" if len(bursts) == 1 else "the largest"
-    where = f"{count_of(len(bursts), 'burst')}, {size} {bursts[0][0]:.2g} {unit}: at {largest}"
-    return [Remainder("time", where, min(share, 1.0))]
+    size = "of" if len(places) == 1 else "the largest"
+    words = f"{count_of(len(places), noun)}, {size} {places[0][0]:.2g} {unit}: at {largest}"
+    return Remainder(axis, words, min(share, 1.0))
 
 
 def _lasting_chance(

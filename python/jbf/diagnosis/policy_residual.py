@@ -114,14 +114,16 @@ class Bursts:
 
 @dataclass(frozen=True)
 class Momentum:
-    """Thresholds for disturbances found by the balance of momentum."""
+    """Thresholds for disturbances found by the momentum residual of short windows."""
 
     intervals: int = documented(
-        8, "number of sampling intervals of a window", "a disturbance lasts for several samples"
+        8,
+        "number of sampling intervals of a window",
+        "impacts last 4 to 8 samples; errors of the speed dominate shorter windows",
     )
     min_sigma: float = documented(
         6.0,
-        "standard deviations beyond which a balance of momentum is violated",
+        "standard errors beyond which a momentum residual is a disturbance",
         "2.6 to 5.4 in simulated drives without a disturbance",
     )
     min_share: float = documented(

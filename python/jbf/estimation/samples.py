@@ -123,12 +123,6 @@ class Samples:
             level = tuple(a * b for a, b in zip(level, factors, strict=True))
         return replace(self, weight=weight, level=level)
 
-    def with_known_motion(self) -> Samples:
-        """Restrict to samples where the motion's errors have at most the variance of the noise."""
-        if self.motion is None:
-            return self
-        return self.within([self.motion.variance_ratio(i) <= 1.0 for i in range(len(self.runs))])
-
     def counted_only(self) -> Samples:
         """Return a copy with zero weight at the excluded samples, some of which a fit uses."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))

@@ -77,12 +77,12 @@ ADVICE = {
         "inspect the record at those instants; record the run again",
     ),
     "momentum": Advice(
-        "an impact, a push, or contact with the rig",
+        "an impact, a push, contact with the rig, or a force that the model lacks there",
         "inspect the record at those instants; record the run again",
     ),
     "motion": Advice(
-        "a force that no effect describes, such as that of a resonance, or a lower resolution of "
-        "the motion than its readings show",
+        "a force that no effect describes, such as that of a resonance, or an encoder that is "
+        "coarser than its readings suggest",
         "record the motion with a finer encoder or a higher rate",
     ),
     "way": Advice(

@@ -44,7 +44,7 @@ TITLES = {
     "frequency": "Spectral lines",
     "bursts": "In bursts",
     "momentum": "Disturbances",
-    "motion": "More than errors of the motion",
+    "motion": "Larger than errors of the motion",
     "way": "Periodic in the position",
     "period": "Periodic in time",
     "stroke": "Variation between strokes",

@@ -65,8 +65,8 @@ def law_and_effects(model: Model) -> str:
 
 UNKNOWN = "unknown"
 SHOWN_SHARE = 0.2
-"""Share of the motion's errors, or of coloured noise, in the mean square error from which a
-summary states it."""
+"""Share of the motion's errors in the mean square, or of coloured noise in the variance of the
+noise, from which a summary states it."""
 
 
 def noise_words(noise_rms: float, unit: str) -> str:
@@ -154,13 +154,13 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
 def drive_sentences(diagnosis: Diagnosis) -> str:
     """State the share of the motion's errors, and effects that fit as well as a machine term.
 
-    Empty if the share is below `SHOWN_SHARE` and no effect does. The share is not known if the
-    residual contains forces that the errors of the motion were enlarged to explain.
+    Empty if the share is below `SHOWN_SHARE` and no effect does. The share is omitted if forces
+    that the model lacks increase the estimated errors of the motion.
     """
     samples, sentences = diagnosis.after.samples, []
     share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
-    enlarged = any(r.axis in ("motion", "momentum") for r in diagnosis.residual_structure)
-    if samples.motion is not None and share >= SHOWN_SHARE and not enlarged:
+    too_large = any(r.axis in ("motion", "momentum") for r in diagnosis.residual_structure)
+    if samples.motion is not None and share >= SHOWN_SHARE and not too_large:
         if not diagnosis.residual_structure:  # the residual has no other part
             share = max(share, 1.0 - (samples.motion.noise / diagnosis.steps[-1].rms) ** 2)
         percent = f"{100.0 * share:.0f} %"
@@ -174,15 +174,15 @@ def drive_sentences(diagnosis: Diagnosis) -> str:
 
 
 def _coloured_noise_sentence(diagnosis: Diagnosis) -> str:
-    """State the share of coloured noise in the mean square; empty if it is below `SHOWN_SHARE`."""
+    """State the share of coloured noise; empty if it is below `SHOWN_SHARE` of the variance."""
     noise = diagnosis.fit.noise
     steps_s = [p.step_s for p in diagnosis.after.campaign.prepared]
     share = noise.coloured_share(median(steps_s))
     if share < SHOWN_SHARE:
         return ""
     return (
-        f" About {100.0 * share:.0f} % of the mean square is noise with a correlation time of "
-        f"{number(noise.memory_s, 2)} s, such as a disturbance or the filter of a sensor causes."
+        f" About {100.0 * share:.0f} % of the variance of the noise has a correlation time of "
+        f"{number(noise.memory_s, 2)} s, as with slowly varying loads or a filtered sensor."
     )
 
 

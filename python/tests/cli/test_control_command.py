@@ -86,7 +86,7 @@ def test_control_tables_reproduce_12_published_cells_within_a_factor_of_2(capsys
     assert min(result["times_better"].values()) > 1.3
     assert {"scale 3.5 V", "scale 25.5 V, as listed"} <= {a["name"] for a in result["assumptions"]}
     out = capsys.readouterr().out
-    assert "13 cells" in out
+    assert " 13 cells" in out
     assert "in 7 of 7 rows" in out
 
 

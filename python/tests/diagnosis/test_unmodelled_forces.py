@@ -15,6 +15,7 @@ from known_motions import Array, quantised
 
 RIG = Rig(drive=Drive("linear", "force"))
 FINE_S, EVERY, DURATION_S = 0.001, 8, 14.0
+INERTIA_KG_M2, COULOMB_N_M = 0.12, 0.9
 MASS_KG, COULOMB_N, VISCOUS_N_S_M, NOISE_N = 95.0, 38.0, 30.0, 2.0
 
 
@@ -65,6 +66,30 @@ def recorded(seed: int, more: Callable[..., Array]) -> Run:
     return Run.from_arrays(time_s, None, force, position_m=counted, name=f"run {seed}")
 
 
+def controlled(seed: int, knock_n_m: float) -> Run:
+    """Joint under position control that is knocked for 15 ms once a second; record of 250 Hz."""
+    random = np.random.default_rng([2612, seed])
+    time_s = np.arange(0.0, 12.0, FINE_S)
+    phases = random.uniform(0.0, 2.0 * np.pi, 3)
+    waves = list(zip((0.5, 0.2, 0.05), (1.1 + 0.3 * seed, 2.9, 6.7), phases, strict=True))
+    target = sum(a * np.sin(w * time_s + p) for a, w, p in waves)
+    rate = sum(a * w * np.cos(w * time_s + p) for a, w, p in waves)
+    push = np.zeros(len(time_s))
+    for begin in np.arange(700, len(time_s) - 20, 1000) + random.integers(-200, 200):
+        push[begin : begin + 15] = knock_n_m * random.choice([-1.0, 1.0])
+    x, v, states = float(target[0]), float(rate[0]), np.empty((len(time_s), 2))
+    for k in range(len(time_s)):
+        torque = 60.0 * (target[k] - x) + 4.0 * (rate[k] - v)
+        states[k] = x, torque
+        free = v + (torque + push[k]) * FINE_S / INERTIA_KG_M2
+        # Friction may stop the joint, but not reverse it.
+        new = np.sign(free) * max(abs(free) - COULOMB_N_M * FINE_S / INERTIA_KG_M2, 0.0)
+        x, v = x + 0.5 * (v + new) * FINE_S, float(new)
+    angle = quantised(states[::4, 0], 2.0 * np.pi / 2**18)
+    torque = states[::4, 1] + 0.05 * random.standard_normal(len(angle))
+    return Run.from_arrays(time_s[::4], None, torque, angle_rad=angle, name=f"run {seed}")
+
+
 @pytest.mark.parametrize(("more", "axes"), [(none, []), (impacts, ["momentum"])])
 def test_impacts_are_not_taken_for_errors_of_the_motion(
     more: Callable[..., Array], axes: list[str]
@@ -88,3 +113,15 @@ def test_errors_of_the_motion_beyond_three_times_their_standard_errors_are_struc
         samples = replace(solution.samples, motion=replace(motion, scale=scale))
         found = find_residual_structure(problem, replace(solution, samples=samples))
         assert [r.axis for r in found] == axes
+
+
+@pytest.mark.parametrize(("knock_n_m", "axes"), [(0.0, set()), (3.0, {"momentum"})])
+def test_knocks_that_move_a_joint_are_not_taken_for_errors_of_its_motion(
+    knock_n_m: float, axes: set[str]
+) -> None:
+    runs = [controlled(seed, knock_n_m) for seed in range(2)]
+    found = diagnose(Rig(drive=Drive("rotary", "torque")), runs, law="coulomb")
+    assert found.effects == ()
+    assert {r.axis for r in found.residual_structure} == axes, found.summary()
+    assert found.fit.params["inertia.m_e"] == pytest.approx(INERTIA_KG_M2, rel=0.02)
+    assert found.fit.params["F_c"] == pytest.approx(COULOMB_N_M, rel=0.02)

@@ -30,7 +30,10 @@ POORLY_KNOWN = (
     "dwell_stiction.t_0_s",
     "dwell_stiction.m",
 )
-"""Parameters that these short runs do not determine, or only within a factor."""
+"""Parameters that these short runs do not determine, or only within a factor.
+
+The damping of a drive is small, and the rests are too short to separate the terms of the ageing.
+"""
 
 
 def fast(names: list[str], chosen: tuple[str, ...]) -> list[Any]:

@@ -233,8 +233,8 @@ impl<T: Real, L: Law<T>, E: Effect<T>> Chain<T, L, E> {
         self.act(law, state, journal, factor, dt_s);
         let mean = from.velocity_m_s + journal.velocity_m_s;
         // Under a rigid drive, breakaway from the static level takes no time.
-        let breaks_away = L::HAS_STATIC_LEVEL && from.direction == T::ZERO;
-        let start_jump_n = if breaks_away { state.jump_n } else { jump_n };
+        let from_rest = L::HAS_STATIC_LEVEL && from.direction == T::ZERO;
+        let start_jump_n = if from_rest { state.jump_n } else { jump_n };
         let mut signal = Signal {
             begin_n: begin_n + start_jump_n * direction_change(from.direction, mean),
             end_n: state.force_n + state.jump_n * direction_change(journal.direction, mean),

@@ -66,7 +66,10 @@ pub trait Law<T: Real> {
     /// [deflects](Self::HAS_BRISTLE).
     const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
 
-    /// True if friction at rest has its own level, which vanishes as soon as the journal slides.
+    /// True if friction at rest may exceed sliding friction at zero speed.
+    ///
+    /// Under a rigid drive, a step from rest then starts at the sliding level, which is taken from
+    /// the end of the step.
     const HAS_STATIC_LEVEL: bool = false;
 
     /// Number of steps between two samples that is sufficient for any sampling interval.

@@ -43,7 +43,7 @@ def find_residual_structure(
     The largest share of the mean square is first. Smoothing biases an estimated motion where the
     acceleration changes fast. The model is therefore refitted with a motion that is smoothed less,
     and a pattern or a tone that changes by more than `policy.motion.max_pattern_ratio` is not
-    returned. The scale of the motion's errors is structure if it exceeds `policy.motion.max_scale`.
+    returned. A scale of the motion's errors above `policy.motion.max_scale` is returned.
     """
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
@@ -80,8 +80,8 @@ def find_residual_structure(
         structure = [r for r in structure if r.share >= least]
         if samples.motion.scale > policy.motion.max_scale:
             where = (
-                "errors of the estimated motion would have to be "
-                f"{samples.motion.scale:.1f} times their standard errors"
+                "the residual requires errors of the motion "
+                f"{samples.motion.scale:.1f} times as large as those of its readings"
             )
             share = samples.motion.variance_share(samples.weight)
             structure.append(Remainder("motion", where, share))

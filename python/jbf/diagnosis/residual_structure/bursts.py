@@ -22,11 +22,14 @@ from jbf.estimation.samples import Samples
 from jbf.records.counts import count_of
 
 APART_S = 0.5
-"""Largest time between two large innovations of the same burst, s. It concerns the text only."""
+"""Largest time between two samples of the same event, s, if the sampling interval is shorter.
+
+It concerns the text only.
+"""
 NO_NOISE = 1e-9
 """Share of the largest innovation below which the other innovations are rounding errors."""
 NAMED = 4
-"""Number of bursts listed in the description. It concerns the text only."""
+"""Number of events listed in the description. It concerns the text only."""
 
 
 def find_bursts(
@@ -64,10 +67,10 @@ def find_bursts(
         (np.abs(e) > policy.bursts.min_sigma * sigma) & counted
         for e, counted in zip(innovations, samples.counted, strict=True)
     ]
-    return [described("time", "burst", prepared, residuals, where, share)]
+    return [describe_events("time", "burst", prepared, residuals, where, share)]
 
 
-def described(
+def describe_events(
     axis: str,
     noun: str,
     prepared: Sequence[Prepared],
@@ -75,32 +78,32 @@ def described(
     where: Sequence[Mask],
     share: float,
 ) -> Remainder:
-    """Describe structure at isolated instants: number, largest size, and largest instants.
+    """Describe events in the residual: their number, the largest size, and the largest instants.
 
     Parameters
     ----------
     axis, noun
-        Kind of structure, and the name of one such structure.
+        Kind of structure, and the singular name of an event, for example `burst`.
     residuals
-        Record minus prediction, N, one array per run.
+        Record minus prediction, in the force unit of the rig, one array per run.
     where
-        Whether a sample belongs to the structure, one array per run.
+        Whether a sample belongs to an event, one array per run.
     share
         Share of the mean square of the residual.
     """
-    places: list[tuple[float, float, str]] = []
+    events: list[tuple[float, float, str]] = []
     for r, within, p in zip(residuals, where, prepared, strict=True):
         index = np.flatnonzero(within)
-        time = p.run.time_s[index]
-        for group in np.split(index, np.flatnonzero(np.diff(time) > APART_S) + 1):
+        time, apart_s = p.run.time_s[index], max(APART_S, 1.5 * p.step_s)
+        for group in np.split(index, np.flatnonzero(np.diff(time) > apart_s) + 1):
             if len(group):
                 top = int(group[np.argmax(np.abs(r[group]))])
-                places.append((abs(float(r[top])), float(p.run.time_s[top]), p.run.name))
-    places.sort(reverse=True)
-    largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in places[:NAMED])
+                events.append((abs(float(r[top])), float(p.run.time_s[top]), p.run.name))
+    events.sort(reverse=True)
+    largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in events[:NAMED])
     unit = prepared[0].run.quantities.force
-    size = "of" if len(places) == 1 else "the largest"
-    words = f"{count_of(len(places), noun)}, {size} {places[0][0]:.2g} {unit}: at {largest}"
+    size = "of" if len(events) == 1 else "the largest"
+    words = f"{count_of(len(events), noun)}, {size} {events[0][0]:.2g} {unit}: at {largest}"
     return Remainder(axis, words, min(share, 1.0))
 
 

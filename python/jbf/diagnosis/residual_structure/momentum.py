@@ -1,15 +1,17 @@
-"""Test for forces that act for several samples: the balance of momentum over short windows.
+"""Test for forces that act for several samples: the momentum residual of short windows.
 
 An abrupt motion has large errors of its acceleration, which can explain any force at single
 samples. The mean acceleration over a window is known much better: it is the change of the speed
-divided by the duration, with the errors of two speeds only. A disturbance such as an impact changes
-the momentum by another amount than the recorded force and the friction do.
+divided by the duration, with the errors of two speeds only. An impact adds an impulse that neither
+the recorded force nor the model contains.
 
 For a window of n intervals and duration T, with the mean force F and the mean prediction P without
-the force of the inertia m, the test statistic is ``F - P - m (v_n - v_0) / T``. It is computed from
-the residuals r and the estimated accelerations a as ``mean(r) + m (mean(a) - (v_n - v_0) / T)``.
-The means are those of the trapezoidal rule. The variance of the statistic is that of the mean
-noise, of the errors of both speeds, and of the rule where the force changes between samples.
+the inertial force, the momentum residual is ``F - P - m (v_n - v_0) / T`` for an inertia m. It is
+computed from the residuals r and the estimated accelerations a as
+``mean(r) + m (mean(a) - (v_n - v_0) / T)``. The means are those of the trapezoidal rule. The
+variance of the momentum residual is that of the mean noise, of the errors of both speeds, and of
+the trapezoidal rule if the recorded force jumps between two samples. A disturbance of one or two
+samples is such a jump, and is not found.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ import numpy as np
 from jbf.arrays import Array, Mask
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.residual_structure.bursts import described
+from jbf.diagnosis.residual_structure.bursts import describe_events
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
@@ -30,81 +32,99 @@ from jbf.estimation.samples import Samples
 def find_disturbances(
     prepared: Sequence[Prepared], samples: Samples, residuals: Sequence[Array], policy: Policy
 ) -> list[Remainder]:
-    """Test for disturbances by the balance of momentum; an empty list if there are none.
+    """Test for disturbances by the momentum residual; an empty list if there are none.
 
-    The motion must have errors, and the model an inertia. `residuals` are record minus prediction,
-    N, one array per run.
+    Only runs of a model with inertia, with errors of the motion, are tested. The threshold is
+    multiplied by the robust standard deviation of the standardised residuals if it exceeds 1. The
+    share is that of the windows in the sum of squares of the included samples.
+
+    Parameters
+    ----------
+    residuals
+        Record minus prediction, in the force unit of the rig, one array per run.
     """
     motion, settings = samples.motion, policy.momentum
     if motion is None:
         return []
-    statistics = [
-        _statistics(p, r, counted, motion, run, settings.intervals)
-        for run, (p, r, counted) in enumerate(
-            zip(prepared, residuals, samples.counted, strict=True)
-        )
-    ]
-    sizes = np.abs(np.concatenate(statistics))
-    sizes = sizes[sizes > 0.0]
+    standardised = []
+    for run, (p, r, counted) in enumerate(zip(prepared, residuals, samples.counted, strict=True)):
+        level = np.ones(len(r)) if samples.level is None else samples.level[run]
+        standardised.append(_standardised(p, r, counted, level, motion, run, settings.intervals))
+    sizes = np.abs(np.concatenate(standardised))
+    sizes = sizes[np.isfinite(sizes)]
     if not len(sizes):
         return []
-    least = settings.min_sigma * max(1.0, float(np.median(sizes)) / 0.6745)
-    where = [
-        _within_windows(np.abs(z) > least, len(r), settings.intervals) & counted
-        for z, r, counted in zip(statistics, residuals, samples.counted, strict=True)
+    threshold = settings.min_sigma * max(1.0, float(np.median(sizes)) / 0.6745)
+    in_disturbance = [
+        _in_windows(np.abs(z) > threshold, len(r), settings.intervals) & counted
+        for z, r, counted in zip(standardised, residuals, samples.counted, strict=True)
     ]
-    square = sum(float(np.sum(r[w] ** 2)) for r, w in zip(residuals, where, strict=True))
-    share = square / max(samples.count * samples.rms(residuals) ** 2, 1e-300)
+    if not any(np.any(w) for w in in_disturbance):
+        return []
+    square = sum(float(np.sum(r[w] ** 2)) for r, w in zip(residuals, in_disturbance, strict=True))
+    share = square / (samples.count * samples.rms(residuals) ** 2)
     if share < settings.min_share:
         return []
-    return [described("momentum", "disturbance", prepared, residuals, where, share)]
+    return [describe_events("momentum", "disturbance", prepared, residuals, in_disturbance, share)]
 
 
-def _statistics(
-    p: Prepared, residual: Array, counted: Mask, motion: ErrorsInMotion, run: int, intervals: int
+def _standardised(
+    p: Prepared,
+    residual: Array,
+    counted: Mask,
+    level: Array,
+    motion: ErrorsInMotion,
+    run: int,
+    intervals: int,
 ) -> Array:
-    """Standardised balance of momentum of each window of a run; zero where it is not tested.
+    """Momentum residual of each window of a run divided by its standard error.
 
-    A window is tested if all of its samples are included and have the same direction of motion.
+    The shape is (n - intervals,). It is NaN for a window with an excluded sample or a reversal.
     """
     errors, sensitivity = motion.errors[run], motion.sensitivity[run]
-    if errors is None or len(residual) <= intervals:
+    if errors is None or len(residual) <= intervals or not np.any(sensitivity[:, 2] > 0.0):
         return np.zeros(0)
     speed, acceleration, force = p.motion.velocity, p.motion.acceleration, p.friction
+    tested = counted[1:] & counted[:-1] & (level[1:] * level[:-1] > 0.0)
+    tested &= speed[1:] * speed[:-1] > 0.0
     step_s = np.diff(p.run.time_s)
-    inertia = _middle(sensitivity[:, 2])
-    excess = _middle(residual) + inertia * (_middle(acceleration) - np.diff(speed) / step_s)
-    duration_s = _summed(step_s, intervals)
-    balance = _summed(excess * step_s, intervals) / duration_s
+    inertia = _interval_means(sensitivity[:, 2])
+    imbalance = inertia * (_interval_means(acceleration) - np.diff(speed) / step_s)
+    imbalance = np.where(tested, _interval_means(residual) + imbalance, 0.0)
+    duration_s = _window_sums(step_s, intervals)
+    means = _window_sums(imbalance * step_s, intervals) / duration_s
 
+    noise = np.where(level > 0.0, motion.noise / np.where(level > 0.0, level, 1.0), 0.0) ** 2
+    jump_squared = np.maximum(np.diff(force) ** 2 - 2.0 * _interval_means(noise), 0.0)
+    jump_squared = np.where(tested, jump_squared, 0.0)
+    in_trapezoids = _window_sums(_interval_means(noise) + jump_squared / 12.0, intervals)
     variances = motion.scale**2 * np.einsum("nii->ni", errors.covariance[:, :3, :3])
-    start, end = variances[:-intervals], variances[intervals:]
-    change = np.maximum(np.diff(force) ** 2 - 2.0 * motion.noise**2, 0.0)
+    by_speed = sensitivity[:, 2] ** 2 * variances[:, 1]
+    by_state = np.sum(sensitivity[:, :2] ** 2 * variances[:, :2], axis=1)
+    start, end = slice(None, -intervals), slice(intervals, None)
     variance = (
-        motion.noise**2 / intervals
-        + (inertia[: len(balance)] / duration_s) ** 2 * (start[:, 1] + end[:, 1])
-        + np.sum(sensitivity[:-intervals, :2] ** 2 * start[:, :2], axis=1)
-        + _summed(change, intervals) / (12.0 * intervals**2)
+        in_trapezoids / intervals**2
+        + (by_speed[start] + by_speed[end]) / duration_s**2
+        + np.maximum(by_state[start], by_state[end])
     )
-    tested = counted[1:] & counted[:-1] & (speed[1:] * speed[:-1] > 0.0)
-    whole = _summed(tested.astype(float), intervals) > intervals - 0.5
-    return np.where(whole, balance / np.sqrt(variance), 0.0)
+    whole = _window_sums(tested.astype(float), intervals) > intervals - 0.5
+    return np.where(whole, means / np.sqrt(np.maximum(variance, 1e-300)), np.nan)
 
 
-def _middle(values: Array) -> Array:
-    """Means of successive values."""
+def _interval_means(values: Array) -> Array:
+    """Mean of the two values at the ends of each interval, shape (n - 1,)."""
     return 0.5 * (values[1:] + values[:-1])
 
 
-def _summed(values: Array, count: int) -> Array:
-    """Sums of `count` successive values, one for each first value."""
+def _window_sums(values: Array, count: int) -> Array:
+    """Sum of the `count` values of each window, shape (n - count + 1,)."""
     total = np.concatenate([[0.0], np.cumsum(values)])
     return np.asarray(total[count:] - total[:-count])
 
 
-def _within_windows(found: Mask, samples: int, intervals: int) -> Mask:
-    """Whether each sample is in one of the windows that were found."""
+def _in_windows(exceeds: Mask, samples: int, intervals: int) -> Mask:
+    """Whether each sample of a run is in one of the windows that exceed the threshold."""
     within = np.zeros(samples, dtype=bool)
-    for first in np.flatnonzero(found):
+    for first in np.flatnonzero(exceeds):
         within[first : first + intervals + 1] = True
     return within

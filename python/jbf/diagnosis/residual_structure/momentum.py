@@ -98,7 +98,9 @@ def _standardised(
     jump_squared = np.maximum(np.diff(force) ** 2 - 2.0 * _interval_means(noise), 0.0)
     jump_squared = np.where(tested, jump_squared, 0.0)
     in_trapezoids = _window_sums(_interval_means(noise) + jump_squared / 12.0, intervals)
-    variances = motion.scale**2 * np.einsum("nii->ni", errors.covariance[:, :3, :3])
+    # The scale is an average. It is too small where the motion is abrupt.
+    scale = max(motion.scale, 1.0)
+    variances = scale**2 * np.einsum("nii->ni", errors.covariance[:, :3, :3])
     by_speed = sensitivity[:, 2] ** 2 * variances[:, 1]
     by_state = np.sum(sensitivity[:, :2] ** 2 * variances[:, :2], axis=1)
     start, end = slice(None, -intervals), slice(intervals, None)

@@ -23,7 +23,7 @@ def summary_of(effect: Effect, terms: Quantities) -> str:
         "sensor_hysteresis": f"{terms.sensor} reads less while the {terms.noun} rises than while "
         "it falls: play or friction in the force path",
         "sensor_nonlinearity": (
-            f"nonlinear {terms.sensor}: it reads a large {terms.noun} too large or too small"
+            f"{terms.sensor} is not linear: it reads a large {terms.noun} too large or too small"
         ),
         "inertia": (
             f"{inertia} that the drive accelerates, contained in the reading of {terms.sensor}"

@@ -6,11 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from jbf import Drive, Rig, Run, diagnose
+from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.residual_structure import find_residual_structure
+from jbf.diagnosis.residual_structure.momentum import find_disturbances
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.generalised_least_squares import with_motion_errors
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 from known_motions import Array, quantised
 
 RIG = Rig(drive=Drive("linear", "force"))
@@ -102,10 +105,15 @@ def test_impacts_are_not_taken_for_errors_of_the_motion(
     assert found.fit.params["inertia.m_e"] == pytest.approx(MASS_KG, rel=0.01)
 
 
-def test_errors_of_the_motion_beyond_three_times_their_standard_errors_are_structure() -> None:
+def fitted_without_disturbance() -> tuple[Problem, Solution]:
+    """A fit with errors of the motion to two runs without impacts."""
     campaign = Campaign.prepare(RIG, [recorded(seed, none) for seed in range(2)])
     plain = Problem(campaign, "coulomb", "journal", ("inertia",))
-    problem, solution = with_motion_errors(plain, minimum(plain, [{}]))
+    return with_motion_errors(plain, minimum(plain, [{}]))
+
+
+def test_errors_of_the_motion_beyond_three_times_their_standard_errors_are_structure() -> None:
+    problem, solution = fitted_without_disturbance()
     motion = solution.samples.motion
     assert motion is not None
     assert motion.scale < 1.0
@@ -113,6 +121,31 @@ def test_errors_of_the_motion_beyond_three_times_their_standard_errors_are_struc
         samples = replace(solution.samples, motion=replace(motion, scale=scale))
         found = find_residual_structure(problem, replace(solution, samples=samples))
         assert [r.axis for r in found] == axes
+
+
+def test_momentum_does_not_depend_on_the_estimated_acceleration() -> None:
+    """The acceleration is wrong by 2 m/s^2 at each sample, and the residual by the mass times it.
+
+    A pulse of the force is found nevertheless.
+    """
+    problem, solution = fitted_without_disturbance()
+    samples, motion = solution.samples, solution.samples.motion
+    assert motion is not None
+    policy = DEFAULT.with_values({"momentum.min_share": 0.0})
+    prepared, residuals = [], []
+    for run, (p, residual) in enumerate(
+        zip(problem.campaign.prepared, solution.residuals, strict=True)
+    ):
+        error = 2.0 * np.random.default_rng(run).standard_normal(len(residual))
+        moved = replace(p.motion, acceleration=p.motion.acceleration + error)
+        prepared.append(replace(p, motion=moved))
+        residuals.append(residual - motion.sensitivity[run][:, 2] * error)
+    assert find_disturbances(prepared, samples, residuals, policy) == []
+    moving = np.flatnonzero(samples.counted[1] & (np.abs(prepared[1].motion.velocity) > 0.3))
+    residuals[1][moving[20:26]] += 200.0
+    (found,) = find_disturbances(prepared, samples, residuals, policy)
+    assert found.where.startswith("1 disturbance")
+    assert f"at {prepared[1].run.time_s[moving[22]]:.1f} s in run 1" in found.where
 
 
 @pytest.mark.parametrize(("knock_n_m", "axes"), [(0.0, set()), (3.0, {"momentum"})])

@@ -78,12 +78,14 @@ def find_residual_structure(
     if samples.motion is not None:
         least = policy.least_share(problem.campaign.motion_share)
         structure = [r for r in structure if r.share >= least]
-        if samples.motion.scale > policy.motion.max_scale:
+        share = samples.motion.variance_share(samples.weight)
+        # A small share does not determine the scale.
+        relevant = share >= policy.motion.max_structure_share
+        if relevant and samples.motion.scale > policy.motion.max_scale:
             where = (
                 "the residual requires errors of the motion "
                 f"{samples.motion.scale:.1f} times as large as those of its readings"
             )
-            share = samples.motion.variance_share(samples.weight)
             structure.append(Remainder("motion", where, share))
     return tuple(sorted(structure, key=lambda r: -r.share))
 

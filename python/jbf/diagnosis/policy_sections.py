@@ -267,8 +267,8 @@ class Motion:
         3.0,
         "scale of the standard errors of the motion above which the residual contains more than "
         "errors of the motion",
-        "the standard errors of the smoother are right within a factor of three; 0.4 to 1.1 in "
-        "simulated drives without other structure",
+        "the standard errors of the smoother are right within a factor of three; 0.4 to 0.9 in "
+        "simulated drives without structure",
     )
     max_pattern_ratio: float = documented(
         1.5,

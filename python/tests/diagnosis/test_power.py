@@ -330,8 +330,7 @@ def test_delay_and_lag_are_confounded_if_reversals_are_uncertain(velocity_noise:
         own = found[name]
         if velocity_noise:
             assert other in own.confounded_with
-            assert (
-                own.distinguishable_80 is None or own.distinguishable_80 > 1.05 * own.detectable_80
-            )
+            limit = own.distinguishable_80
+            assert limit is None or limit > max(own.detectable_80, 2e-3)
         else:
             assert own.distinguishable_80 < 2e-3

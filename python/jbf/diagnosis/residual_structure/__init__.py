@@ -5,9 +5,9 @@ ripples over the travel, and errors that repeat with the motion. `bursts` tests 
 isolated instants, and `momentum` for disturbances that act for several samples. `constancy` tests
 whether all runs have the same parameters, and all strokes the same friction level.
 
-All tests use innovations, the residuals whitened by the noise model, so that coloured noise is not
-reported as structure. A pattern is reported if it is both significant and large enough to be
-relevant. Sizes in newtons refer to the residual: record minus model.
+All tests but that of the momentum use innovations, the residuals whitened by the noise model, so
+that coloured noise is not reported as structure. A pattern is reported if it is both significant
+and large enough to be relevant. Sizes in newtons refer to the residual: record minus model.
 """
 
 from __future__ import annotations

@@ -32,11 +32,12 @@ from jbf.estimation.samples import Samples
 def find_disturbances(
     prepared: Sequence[Prepared], samples: Samples, residuals: Sequence[Array], policy: Policy
 ) -> list[Remainder]:
-    """Test for disturbances by the momentum residual; an empty list if there are none.
+    """Find disturbances by the momentum residual of short windows.
 
-    Only runs of a model with inertia, with errors of the motion, are tested. The threshold is
-    multiplied by the robust standard deviation of the standardised residuals if it exceeds 1. The
-    share is that of the windows in the sum of squares of the included samples.
+    The list is empty if there are none. Runs are tested if the model has an inertia and the motion
+    has errors. The threshold is multiplied by the robust standard deviation of the standardised
+    residuals if it exceeds 1. The share is that of the windows in the sum of squares of the
+    included samples.
 
     Parameters
     ----------

@@ -100,9 +100,12 @@ def default_law_of_diagnosis(rig: Rig) -> str:
 
 
 def _describes_bearing(rig: Rig) -> bool:
-    """Whether a rig has a bearing or a lubricant; `check_rig` requires both for the journal law."""
+    """Whether a rig is not a drive, and has a bearing or a lubricant.
+
+    `check_rig` requires both for the journal law.
+    """
     the_rig(rig)
-    return rig.bearing is not None or rig.lubricant is not None
+    return rig.drive is None and (rig.bearing is not None or rig.lubricant is not None)
 
 
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:

@@ -32,6 +32,7 @@ from jbf.records.counts import count_of
 from jbf.records.csv_table import HEADER_EXAMPLE, lines_of, plain_columns, read_table
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
+from jbf.records.other_units import in_other_units, unread_columns
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 from jbf.text_files import name_of, path_of
@@ -93,6 +94,7 @@ def _checked_header(
     of_drive: DriveColumns | None,
 ) -> None:
     known_columns = COLUMNS if of_drive is None else of_drive.known
+    quantities = () if of_drive is None else of_drive.quantities
 
     def wrong(column: str | None, problem: str, remedy: str) -> InputError:
         return InputError(file=path, row=row, column=column, problem=problem, remedy=remedy)
@@ -122,6 +124,9 @@ def _checked_header(
                 remedy = f"did you mean {quoted(misses[name])}? rename it to {name}"
             else:
                 remedy = f"add it; the header has {listed(header)}"
+                columns = next((q for q in quantities if name in q), (name,))
+                for other, unit in in_other_units(header, columns):
+                    remedy = f"{other} is in {unit}; jbf import converts it"
                 of_drives = [heading for heading in DRIVE_COLUMNS if heading in header]
                 if of_drive is None and of_drives:
                     remedy += f"; a rig with [drive] defines {of_drives[0]}"
@@ -231,10 +236,11 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         columns[name] = filled(columns["time_s"], columns[name], sampled)
     if of_drive is None:
         return replace(Run.of_columns(name_of_run, columns, path), read=gaps)
+    unread = unread_columns(name_of_run, columns, of_drive.quantities)
     called = of_drive.called(columns)
     columns, findings = of_drive.converted(name_of_run, columns)
     run = Run.of_columns(name_of_run, columns, path)
-    findings = (*findings, *run.reading)
+    findings = (*unread, *findings, *run.reading)
     read = {called.get(name, name): sampled for name, sampled in gaps.items()}
     read = {name: sampled for name, sampled in read.items() if name in columns}
     return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)

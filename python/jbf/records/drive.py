@@ -94,6 +94,9 @@ class Drive:
         _check_word("motion", self.motion, get_args(Kind))
         readings = [friction for motion, friction in _CONSTANTS if motion == self.motion]
         _check_word("friction", self.friction, readings, f" of a {self.motion} drive")
+        if isinstance(self.gear_ratio, str):
+            remedy = "write the turns of the motor per turn of the driven part, such as 50"
+            raise _wrong("gear_ratio", f"{quoted(self.gear_ratio)} is not a number", remedy)
         for name in (f.name for f in fields(self)):
             value = getattr(self, name)
             if name in ("motion", "friction") or value is None:

@@ -91,6 +91,12 @@ class DriveColumns:
         of_link = ("weight_angle_rad",) if self.drive.motion == "rotary" else ()
         return (*COLUMNS_OF_EVERY_DRIVE, *self.friction, *self.speed, *self.place, *of_link)
 
+    @property
+    def quantities(self) -> tuple[tuple[str, ...], ...]:
+        """Columns of each quantity that is read: friction, speed, position, and further columns."""
+        further = tuple((name,) for name in COLUMNS_OF_EVERY_DRIVE)
+        return tuple(q for q in map(tuple, (self.friction, self.speed, self.place)) if q) + further
+
     def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
         """Return the required columns: the time, a motion and a friction.
 
@@ -130,10 +136,18 @@ class DriveColumns:
             if column in _TURNED and size != 1.0:
                 values = _unwrapped(values)
             renamed[target] = values if size == 1.0 else frozen(values * size)
-            if size != 1.0:
-                findings.append(_conversion(name, target, column, size, si))
+            # A gear ratio of 1 may have been omitted by mistake.
+            if size != 1.0 or column.startswith("motor_"):
+                findings.append(self._conversion(name, target, column, size, si))
             findings += [_not_read(name, target, unread_column, column) for unread_column in unread]
         return renamed, tuple(findings)
+
+    def _conversion(self, name: str, target: str, column: str, size: float, si: str) -> Finding:
+        source_unit = next(unit for end, unit in _ENDS.items() if column.endswith(end))
+        words = f"{column} was converted: {source_unit} = {size:.5g} {si}"
+        if column.startswith("motor_"):
+            words += f" with gear_ratio = {self.drive.gear_ratio:g}"
+        return Finding("converted", target, name, size, si, "converted on reading", words)
 
     def called(self, columns: Mapping[str, Array]) -> dict[str, str]:
         """Map each file column that is read to its name in a run."""
@@ -199,12 +213,6 @@ def _unwrapped(angle: Array) -> Array:
     """Unwrap an angle that restarts at each turn; return a multi-turn angle unchanged."""
     wraps = float(np.ptp(angle)) <= 2.0 * math.pi * (1.0 + 1e-9)
     return np.unwrap(angle) if wraps else angle
-
-
-def _conversion(name: str, target: str, column: str, size: float, si: str) -> Finding:
-    source_unit = next(unit for end, unit in _ENDS.items() if column.endswith(end))
-    words = f"{column} was converted: {source_unit} = {size:.5g} {si}"
-    return Finding("converted", target, name, size, si, "converted on reading", words)
 
 
 def _not_read(name: str, target: str, unread: str, column: str) -> Finding:

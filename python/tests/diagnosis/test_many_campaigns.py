@@ -10,7 +10,7 @@ from typing import Any
 import jbf
 import numpy as np
 import pytest
-from jbf import Diagnosis, InputError, Lubricant, Rig, diagnose_many
+from jbf import Diagnosis, Drive, InputError, Lubricant, Rig, diagnose_many
 from jbf.cli import main
 from jbf.errors import JbfError
 from jbf.models.chain import default_law_of_diagnosis
@@ -117,11 +117,14 @@ def test_campaign_that_is_not_a_pair_of_rig_and_runs_is_an_error() -> None:
 
 
 def test_law_of_each_campaign_is_by_default_that_of_its_kind_of_rig() -> None:
-    rigs = {"slide": Rig(), "bearing": Rig.thesis(), "incomplete": Rig(lubricant=Lubricant(0.1))}
+    oil = Lubricant(0.1)
+    rigs = {"slide": Rig(), "bearing": Rig.thesis(), "incomplete": Rig(lubricant=oil)}
+    rigs["gear"] = Rig(lubricant=oil, drive=Drive("rotary", "torque"))
     assert {name: default_law_of_diagnosis(rig) for name, rig in rigs.items()} == {
         "slide": "auto",
         "bearing": "journal",
         "incomplete": "journal",
+        "gear": "auto",
     }
     incomplete = diagnose_many({"a": (rigs["incomplete"], linear_runs("mass"))}, law=None)["a"]
     assert isinstance(incomplete, InputError)

@@ -12,6 +12,8 @@ from input_errors import input_error
 from jbf import Rig
 from jbf.records.drive import Drive
 from jbf.records.drive_columns import RPM, DriveColumns
+from jbf.records.motion.position import Position
+from jbf.records.motion.units import wrong_unit
 
 TORQUE = Drive("rotary", "torque", gear_ratio=20.0)
 CURRENT = Drive("rotary", "current", torque_constant_n_m_a=0.5, gear_ratio=8.0)
@@ -21,6 +23,7 @@ SCREW = Drive("linear", "torque", pitch_m=0.02, gear_ratio=3.0)
 LINEAR_MOTOR = Drive("linear", "current", force_constant_n_a=60.0)
 RATED = Drive("linear", "percent", rated_force_n=250.0)
 SERVO = Drive("linear", "percent", rated_torque_n_m=1.5, pitch_m=0.01, gear_ratio=2.0)
+MOTION_OF_A_SLIDE = ("velocity_m_s", "friction_n")
 BOTH = {"force_constant_n_a": 1.0, "torque_constant_n_m_a": 1.0}
 TIME_S = 0.01 * np.arange(200)
 ANGLE = 1.5 * np.sin(TIME_S)
@@ -67,7 +70,7 @@ def test_units_and_sensor_name_of_a_drive_are_determined_by_motion_and_source() 
         ("linear", "current", BOTH, "force_constant_n_a or torque_constant_n_m_a"),
         ("linear", "percent", {}, "rated_force_n or rated_torque_n_m"),
         ("rotary", "torque", {"gear_ratio": 0.0}, "gear_ratio"),
-        ("rotary", "torque", {"gear_ratio": "3"}, "gear_ratio"),
+        ("rotary", "torque", {"gear_ratio": "1:50"}, "gear_ratio"),
         ("rotary", "torque", {"mass_kg": 1.0}, "mass_kg"),
         ("rotary", "torque", {"pitch_m": 1.0}, "pitch_m"),
         ("linear", "force", {"inertia_kg_m2": 1.0}, "inertia_kg_m2"),
@@ -162,6 +165,51 @@ def test_motor_columns_are_converted_to_the_output_side_and_reported() -> None:
         ("converted", "velocity_m_s", pytest.approx(RPM), "rad/s"),
         ("converted", "angle_rad", pytest.approx(0.05), "rad"),
     ]
+
+
+def test_motor_column_without_a_gear_ratio_is_reported_with_the_ratio_of_one() -> None:
+    columns = {"time_s": TIME_S, "motor_angle_rad": ANGLE, "torque_n_m": TORQUE_N_M}
+    converted, (finding,) = DriveColumns.of(Drive("rotary", "torque")).converted("a", columns)
+    np.testing.assert_array_equal(converted["angle_rad"], ANGLE)
+    assert (finding.kind, finding.channel, finding.size) == ("converted", "angle_rad", 1.0)
+    assert "gear_ratio = 1" in finding.words
+
+
+def test_angle_faster_than_the_speed_by_the_gear_ratio_is_reported_with_a_hint() -> None:
+    position = Position(20.0 * ANGLE, "angle_rad", "rad", 1.0)
+    mismatch = wrong_unit("a", TIME_S, position, SPEED, Rig(drive=TORQUE).quantities)
+    assert mismatch is not None
+    assert mismatch.factor == pytest.approx(20.0, rel=1e-3)
+    assert "gear_ratio" in mismatch.finding.words
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "drive"),
+    [
+        ("angle_deg", "angle_rad", TORQUE),
+        ("motor_angle_rev", "angle_rad", TORQUE),
+        ("position_mm", "position_m", SLIDE),
+        ("temperature_K", "temperature_c", SLIDE),
+    ],
+)
+def test_unread_column_of_a_missing_quantity_is_reported(
+    name: str, column: str, drive: Drive, tmp_path: Path
+) -> None:
+    """The column is kept; one of another quantity with the same unit is not reported."""
+    speed, force = ("velocity_rad_s", "torque_n_m") if drive is TORQUE else MOTION_OF_A_SLIDE
+    columns = {"time_s": TIME_S, speed: SPEED, force: TORQUE_N_M, name: ANGLE, "bolt_mm": ANGLE}
+    run = jbf.read_run(record(tmp_path, columns), Rig(drive=drive))
+    (finding,) = run.reading
+    assert (finding.kind, finding.channel) == ("other_unit", column)
+    assert name in finding.words
+    np.testing.assert_array_equal(run.extra[name], ANGLE)
+
+
+def test_missing_speed_is_reported_with_its_column_in_another_unit(tmp_path: Path) -> None:
+    columns = {"time_s": TIME_S, "speed_deg_s": SPEED, "torque_n_m": TORQUE_N_M}
+    error = input_error(jbf.read_run, record(tmp_path, columns), Rig(drive=TORQUE))
+    assert error.column == "velocity_rad_s"
+    assert "speed_deg_s is in deg/s" in str(error.remedy)
 
 
 def test_second_friction_column_is_reported_and_kept_unconverted() -> None:

@@ -71,12 +71,19 @@ def wrong_unit(
             )
             break
     turned = " and with opposite sign" if ratio < 0.0 else ""
-    hint = unit or ("; check the radius of the journal" if position.arm_m != 1.0 else "")
+    hint = unit or _hint(position, turns=quantities.motion == "rotary")
     words = f"{position.column} changes {abs(ratio):.4g} times as fast as {called}{turned}"
     done = f"divided by {by:.4g}, to agree with the speed"
     if column == "velocity_m_s":
         done = f"multiplied by {by:.4g}, to agree with the position"
     return Mismatch(Finding("units", column, name, ratio, "1", done, words + hint), by)
+
+
+def _hint(position: Position, *, turns: bool) -> str:
+    """Return what to check if no unit explains the ratio of path and speed."""
+    if turns:
+        return "; check gear_ratio"
+    return "; check the radius of the journal" if position.arm_m != 1.0 else ""
 
 
 def _units(position: Position, *, turns: bool) -> Iterator[tuple[str, str, float]]:

@@ -41,6 +41,7 @@ pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain
     let rig = Rig {
         radius_m: T::of(Bearing::THESIS.radius_m),
         count: T::of(f64::from(Bearing::THESIS.count)),
+        force_at_drive: false,
     };
     Chain {
         law: law(lift),

@@ -34,6 +34,7 @@ fn main() -> Result<(), Error> {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
         count: 4.0,
+        force_at_drive: false,
     };
     let chain = Chain {
         law,

@@ -31,10 +31,7 @@ impl Visitor<f64> for Table {
         let chain = Chain {
             law,
             effects: Effects::NONE,
-            rig: Rig {
-                radius_m: 1.0,
-                count: 1.0,
-            },
+            rig: Rig::default(),
         };
         let mut state = chain.start(&motion(0.0));
         let step = |i: u32| {

@@ -138,6 +138,12 @@ pub struct JournalMotion<T> {
     pub velocity_m_s: T,
     /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: T,
+    /// Acceleration at which the force is measured, m/s^2: that of the drive ahead of its spring or
+    /// gap, or of the journal ([`Rig::force_at_drive`](crate::effect::Rig::force_at_drive)).
+    pub measured_acceleration_m_s2: T,
+    /// Force by which the inertia behind a spring exceeds that of the same mass moving with the
+    /// drive, N; zero unless the force is measured at the drive.
+    pub spring_inertia_n: T,
     /// Journal angle, rad.
     pub angle_rad: T,
     /// Angle of the weight minus the journal angle, rad.
@@ -189,6 +195,8 @@ impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
         Self {
             velocity_m_s: m.velocity_m_s,
             acceleration_m_s2: m.acceleration_m_s2,
+            measured_acceleration_m_s2: m.acceleration_m_s2,
+            spring_inertia_n: T::ZERO,
             angle_rad: m.angle_rad,
             weight_offset_rad: m.weight_offset_rad,
             direction: m.velocity_m_s.sign(),

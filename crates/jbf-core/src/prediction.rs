@@ -165,10 +165,7 @@ pub fn read_force<T: Real>(
     force_n: &[f64],
     mut sink: impl FnMut(usize, T),
 ) {
-    let rig = Rig {
-        radius_m: T::ONE,
-        count: T::ONE,
-    };
+    let rig = Rig::default();
     let mut states = effects.start(&Motion::at_rest(T::ONE), &rig);
     let longest_s = effects.longest_step_s().min(0.02);
     let mut last: Option<(f64, f64)> = None;

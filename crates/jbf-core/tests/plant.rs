@@ -19,6 +19,7 @@ fn chain<L>(law: L) -> Chain<f64, L> {
         rig: Rig {
             radius_m: 0.0127,
             count: 4.0,
+            force_at_drive: false,
         },
     }
 }

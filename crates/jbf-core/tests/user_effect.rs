@@ -32,6 +32,7 @@ fn run(effects: impl Effect<f64>) -> Vec<f64> {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
         count: 4.0,
+        force_at_drive: false,
     };
     let chain = Chain {
         law: law(Clock::Journal),
@@ -132,6 +133,7 @@ fn empty_set_of_user_effects_changes_no_bit() {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
         count: 4.0,
+        force_at_drive: false,
     };
     let chain = Chain {
         law: law(Clock::Journal),

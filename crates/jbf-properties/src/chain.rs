@@ -56,6 +56,7 @@ impl<T: Real> Visitor<T> for Along<'_, '_, T> {
         let rig = Rig {
             radius_m: T::of(Bearing::THESIS.radius_m),
             count: T::of(4.0),
+            force_at_drive: false,
         };
         let chain = Chain {
             law,

@@ -36,24 +36,25 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     bend = drive_compliance_k * (change * dt_s)
     origin = state.driven_place - state.encoder_place
     ahead = origin
-    before = state.driven_speed
+    gain = 0.0
     direction = 0.0
     for k in range(0, count):
         share = (real(k) + 0.5) * (1.0 / steps)
         pushed = first + linear * share - bend * (0.5 * share * (1.0 - share))
         push = inertia * state.driven_speed - drive_compliance_k * ahead + pushed
-        before = state.driven_speed
         direction = 0.0
         if push > hold:
             direction = 1.0
         elif push < -hold:
             direction = -1.0
         if direction == 0.0:
+            gain = -state.driven_speed
             state.driven_speed = 0.0
         else:
             speed = (push - hold * direction) * inverse_drag
             ahead += speed * h
             reached = speed + speed - state.driven_speed
+            gain = reached - state.driven_speed
             if reached * direction < 0.0:
                 state.driven_speed = 0.0
             else:
@@ -70,7 +71,7 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     state.encoder_speed = motion.velocity
     state.direction = direction
     motion.velocity = state.driven_speed
-    motion.acceleration = (state.driven_speed - before) / h
+    state.spring_inertia = drive_compliance_J * (gain / h - motion.acceleration)
     motion.position = state.driven_place
 
 
@@ -129,7 +130,6 @@ def backlash_step(state: Out[State], motion: Out[Motion], dt_s: real):
         else:
             driven = 0.0
     motion.velocity = v1 * driven
-    motion.acceleration = motion.acceleration * driven
     motion.position = motion.position - (state.gap_place - state.gap_first)
     state.direction = state.direction * driven
 '''
@@ -147,12 +147,14 @@ DRIVE: dict[str, Memory] = {
             "spring_slope0": "real",
             "spring_slope1": "real",
             "spring_step_s": "real",
+            "spring_inertia": "real",
         },
         start="""
 driven_place = position
 driven_speed = v
 encoder_place = position
 encoder_speed = v
+spring_inertia = 0.0
 """,
         advance="",
     ),

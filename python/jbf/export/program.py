@@ -11,6 +11,7 @@ from jbf.export.drive_equations import DIRECTION, DRIVE, RESIST
 from jbf.export.equations import (
     CONTACT,
     FUNCTIONS,
+    INERTIA_WITH_SPRING,
     LAWS,
     OTHER,
     PRESLIDING,
@@ -85,6 +86,9 @@ def equations(model: Model, compensated: bool, stepped: bool) -> dict[str, list[
         return "\n".join(stage[name] for name in model.effects if name in stage)
 
     driven = [name for name in model.effects if name in DRIVE]
+    other = OTHER
+    if "drive_compliance" in driven:
+        other = OTHER | {"inertia": INERTIA_WITH_SPRING}
     drive = [
         "state.direction = sign(place.velocity)",
         *(f"{name}_step(state, place, dt_s / steps)" for name in driven),
@@ -95,7 +99,7 @@ def equations(model: Model, compensated: bool, stepped: bool) -> dict[str, list[
         "resistance": RESIST if "drive_compliance" in driven else "",
         "friction_of_law": law.friction,
         "contact": of_effects(CONTACT),
-        "other": of_effects(OTHER),
+        "other": of_effects(other),
         "transmission": of_effects(TRANSMISSION),
         "force_of_contact": BRISTLES if bristles.states else RIGID,
         "legs": LEGS if driven else ONE_LEG,

@@ -203,7 +203,9 @@ def test_driven_side_that_rings_and_reverses_within_a_step_gives_the_numbers_of_
 ) -> None:
     values = {"F_c": 5e-4, "F_s": 5e-4, "F_v": 0.0, "presliding.sigma": 100.0}
     values |= {"drive_compliance.k": 60.0, "drive_compliance.c": 1e-4, "drive_compliance.J": 2e-3}
-    model = jbf.Model(JOINT, "coulomb", ["drive_compliance", "presliding"], values)
+    values["inertia.m_e"] = 3e-3
+    effects = ["drive_compliance", "backlash", "inertia", "presliding"]
+    model = jbf.Model(JOINT, "coulomb", effects, values | {"backlash.gap": 1e-3})
     run = runs_with_all_columns(0.01)[0]
     force = run_program(export.to(model, "c", [run]), tmp_path, export.record(model, run))
     assert force.tolist() == model.predict(run).tolist()

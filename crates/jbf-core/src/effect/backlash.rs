@@ -123,9 +123,16 @@ impl<T: Real> Backlash<T> {
             let leans = state.closed == if to.direction > T::ZERO { 1 } else { -1 };
             driven = if leans { T::ONE } else { T::ZERO };
         }
+        let acceleration_m_s2 = to.acceleration_m_s2 * driven;
         JournalMotion {
             velocity_m_s: v1 * driven,
-            acceleration_m_s2: to.acceleration_m_s2 * driven,
+            acceleration_m_s2,
+            measured_acceleration_m_s2: if rig.force_at_drive {
+                to.measured_acceleration_m_s2
+            } else {
+                acceleration_m_s2
+            },
+            spring_inertia_n: to.spring_inertia_n,
             angle_rad: to.angle_rad - (state.place_m - state.first_m) / rig.radius_m,
             weight_offset_rad: to.weight_offset_rad,
             direction: to.direction * driven,

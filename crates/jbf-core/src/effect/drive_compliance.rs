@@ -8,6 +8,13 @@
 //! F is set-valued at rest: the journal sticks while the torque of the spring is below the sliding
 //! friction, and the load cell then measures the torque of the spring.
 //!
+//! The force of a drive ([`Rig::force_at_drive`]) is measured ahead of the spring. With the effect
+//! `inertia`, J is the part of its mass that is behind the spring:
+//!
+//! ```text
+//! T = (m_e - J) theta_m'' + J theta_j'' + F(theta_j')
+//! ```
+//!
 //! A linear axis is treated as a shaft of radius 1 m: k is then in N/m, c in N s/m, J in kg.
 //!
 //! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994). The
@@ -78,7 +85,8 @@ described! {
         .source("Cohn 1998, section 5.1; Harnoy et al. 1994")
         .limits(
             "one spring, one inertia; higher torsional modes are not included; on a linear axis \
-             k is in N/m, c in N s/m, J in kg",
+             k is in N/m, c in N s/m, J in kg; at a drive, J is the part of inertia.m_e behind the \
+             spring, and the position is that of the motor",
         )
         .needs(&[Need::Path, Need::NoBristle]);
     k = "k", "N m/rad", "torsional stiffness between encoder and journal",
@@ -133,12 +141,11 @@ impl<T: Real> DriveCompliance<T> {
         let from = state.angle_rad - state.encoder_rad;
         let mut ahead = from;
         let mut direction = T::ZERO;
-        let mut before = state.speed_rad_s;
+        let mut change_rad_s = T::ZERO;
         for i in 0..steps as u32 {
             let share = (f64::from(i) + 0.5) * inverse_steps;
             let pushed = first + line.times(share) - bend.times(sag(share));
             let push = inertia * state.speed_rad_s - k * ahead + pushed;
-            before = state.speed_rad_s;
             let held = if push > hold {
                 direction = T::ONE;
                 hold
@@ -147,12 +154,14 @@ impl<T: Real> DriveCompliance<T> {
                 -hold
             } else {
                 direction = T::ZERO;
+                change_rad_s = -state.speed_rad_s;
                 state.speed_rad_s = T::ZERO;
                 continue;
             };
             let speed = (push - held) * inverse_drag;
             ahead += speed * h;
             let after = speed + speed - state.speed_rad_s;
+            change_rad_s = after - state.speed_rad_s;
             // A midpoint step must not carry the journal through rest: it stops there first.
             state.speed_rad_s = if after.value() * direction.value() < 0.0 {
                 T::ZERO
@@ -174,9 +183,19 @@ impl<T: Real> DriveCompliance<T> {
             }
         }
         (state.encoder_rad, state.encoder_m_s) = (to.angle_rad, to.velocity_m_s);
+        let acceleration_m_s2 = change_rad_s / h * rig.radius_m;
+        let (measured_acceleration_m_s2, spring_inertia_n) = if rig.force_at_drive {
+            let difference_m_s2 = acceleration_m_s2 - to.acceleration_m_s2;
+            let inertia = self.inertia_kg_m2 / (arm * rig.radius_m);
+            (to.acceleration_m_s2, inertia * difference_m_s2)
+        } else {
+            (acceleration_m_s2, T::ZERO)
+        };
         JournalMotion {
             velocity_m_s: state.speed_rad_s * rig.radius_m,
-            acceleration_m_s2: (state.speed_rad_s - before) / h * rig.radius_m,
+            acceleration_m_s2,
+            measured_acceleration_m_s2,
+            spring_inertia_n,
             angle_rad: state.angle_rad,
             weight_offset_rad: to.weight_offset_rad,
             direction,

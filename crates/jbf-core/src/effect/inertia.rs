@@ -1,5 +1,8 @@
 //! Reflected inertia: `+ m_e dv/dt`; the load cell also measures the force on an accelerated mass.
 //!
+//! The force of a drive ([`Rig::force_at_drive`]) is measured ahead of a spring or gap: the mass then
+//! moves with the drive, except for the part J behind the spring of `drive_compliance`.
+//!
 //! Source: d'Alembert; the housing on the arm of Cohn's apparatus (1998, section 4.1), and any
 //! drive force measured ahead of the moving mass.
 
@@ -23,8 +26,8 @@ described! {
         .transmitted()
         .source("d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)")
         .limits(
-            "a rigid mass; the acceleration is derived from the recorded motion and has \
-                 its noise",
+            "a rigid mass, that of the drive's side with backlash; the acceleration is derived from \
+             the recorded motion and has its noise",
         );
     m_e = "m_e", "kg", "effective mass at the sliding surface",
         [0.0, 1e6], [4.0, 100.0] null(0.0);
@@ -49,7 +52,7 @@ impl<T: Real> Effect<T> for Inertia<T> {
         sum_n: &mut Friction<T>,
         transmitted_n: &mut T,
     ) {
-        let force_n = self.mass_kg * journal.acceleration_m_s2;
+        let force_n = self.mass_kg * journal.measured_acceleration_m_s2 + journal.spring_inertia_n;
         sum_n.smooth += force_n;
         *transmitted_n += force_n;
     }

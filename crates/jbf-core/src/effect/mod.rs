@@ -90,6 +90,9 @@ pub struct Rig<T> {
     pub radius_m: T,
     /// Number of bearings on the shaft.
     pub count: T,
+    /// Whether the recorded force is that of the drive, ahead of its spring or gap, as the current
+    /// of a motor is; otherwise it is the friction of the journal.
+    pub force_at_drive: bool,
 }
 
 impl<T: Real> Default for Rig<T> {
@@ -102,11 +105,13 @@ impl<T: Real> Default for Rig<T> {
 impl<T: Real> Rig<T> {
     /// Creates the properties of a rig from its bearing.
     ///
-    /// Without a bearing, the axis is linear and treated as a shaft of radius 1 m.
+    /// Without a bearing, the axis is linear and treated as a shaft of radius 1 m, and the force is
+    /// that of its drive.
     pub(crate) fn on(bearing: Option<&Bearing>) -> Self {
         Self {
             radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
             count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),
+            force_at_drive: bearing.is_none(),
         }
     }
 }

@@ -53,20 +53,29 @@ pub fn chain<T: Real>(effects: &[(&str, &[f64])]) -> Chain<T, Journal<T>> {
 
 /// Chain of any law and effects in the rig of Cohn (1998).
 pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L> {
+    let rig = Rig {
+        radius_m: T::of(Bearing::THESIS.radius_m),
+        count: T::of(f64::from(Bearing::THESIS.count)),
+        force_at_drive: false,
+    };
+    Chain {
+        rig,
+        ..on_drive(law, effects)
+    }
+}
+
+/// Chain of any law and effects on a linear axis whose force is that of the drive.
+pub fn on_drive<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L> {
     let mut all = Effects::NONE;
     for (name, values) in effects {
         let lifted: Vec<T> = values.iter().map(|&v| T::of(v)).collect();
         all.set(name, &lifted)
             .unwrap_or_else(|e| panic!("{name}: {e}"));
     }
-    let rig = Rig {
-        radius_m: T::of(Bearing::THESIS.radius_m),
-        count: T::of(f64::from(Bearing::THESIS.count)),
-    };
     Chain {
         law,
         effects: all,
-        rig,
+        rig: Rig::default(),
     }
 }
 

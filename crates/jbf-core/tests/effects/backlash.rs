@@ -3,7 +3,7 @@
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;
-use crate::common::{chain_round, readings, LOAD_N};
+use crate::common::{chain_round, on_drive, readings, LOAD_N};
 use jbf_core::run::{predict, Record};
 use jbf_core::{Bearing, Dual, Motion, Real};
 use std::f64::consts::PI;
@@ -36,6 +36,28 @@ fn friction_is_zero_after_a_reversal_until_the_gap_is_crossed() {
         };
         assert!((f - expected).abs() < 1e-12, "{t}: {f} {expected}");
     }
+}
+
+/// At a drive, the force that accelerates its inertia is also measured inside the gap.
+#[test]
+fn inertia_of_a_drive_acts_inside_the_gap() {
+    let (gap, mass_kg) = (0.005, 2.0);
+    let chain = on_drive(
+        ConstantLaw(F),
+        &[("inertia", &[mass_kg]), ("backlash", &[gap])],
+    );
+    let reversed = PI + 0.5 * (1.0 - gap / 0.127_f64).acos();
+    let motion = |t: f64| Motion {
+        time_s: t,
+        angle_rad: -0.127 * t.cos(),
+        velocity_m_s: 0.127 * t.sin(),
+        acceleration_m_s2: 0.127 * t.cos(),
+        ..Motion::at_rest(LOAD_N)
+    };
+    let steps = (reversed / DT_S) as u32;
+    let force = readings(&chain, DT_S, steps, motion)[steps as usize];
+    let expected = mass_kg * 0.127 * (DT_S * f64::from(steps)).cos();
+    assert!((force - expected).abs() < 1e-12, "{force} {expected}");
 }
 
 /// The effect is zero without a reversal, because the flank is in contact at the first motion.
@@ -127,6 +149,7 @@ fn reading_of_a_record_is_continuous_in_the_gap() {
         rig: jbf_core::effect::Rig {
             radius_m: Dual::of(0.0127),
             count: Dual::of(4.0),
+            force_at_drive: false,
         },
     };
     predict(&chain, &record, 0.02, |_, f| {

@@ -42,6 +42,7 @@ fn run<T: Real>(info: &Info, p: &[T], motion: impl Fn(f64) -> Motion<T>) -> Vec<
     let rig = Rig {
         radius_m: T::of(Bearing::THESIS.radius_m),
         count: T::of(4.0),
+        force_at_drive: false,
     };
     readings(&Chain { law, effects, rig }, DT_S, 1000, motion)
 }

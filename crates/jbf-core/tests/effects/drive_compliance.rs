@@ -3,12 +3,13 @@
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, held};
-use crate::common::{chain_round, readings, LOAD_N};
+use crate::common::{chain_round, on_drive, readings, LOAD_N};
 use jbf_core::Motion;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 const K: f64 = 60.0;
 const J: f64 = 2e-3;
+const AMPLITUDE_M: f64 = 0.01;
 /// Product n R of the number of bearings and the radius, m.
 const ARM_M: f64 = 4.0 * 0.0127;
 
@@ -118,4 +119,69 @@ fn journal_sticks_below_the_sliding_friction_and_the_cell_reads_the_torque() {
         held(if t == 0.0 { 0.0 } else { 1.01 * slip / K }, t)
     });
     assert!(over[999] > 0.0, "just above, it slips");
+}
+
+/// Sine motion of a slide, with exact acceleration.
+fn swing(omega: f64, t: f64) -> Motion<f64> {
+    let (sin, cos) = (omega * t).sin_cos();
+    Motion {
+        time_s: t,
+        angle_rad: AMPLITUDE_M * sin,
+        velocity_m_s: AMPLITUDE_M * omega * cos,
+        acceleration_m_s2: -AMPLITUDE_M * omega * omega * sin,
+        ..Motion::at_rest(LOAD_N)
+    }
+}
+
+/// At a drive, the force contains the inertia ahead of the spring and the torque of the spring.
+///
+/// With J behind the spring and M - J ahead of it, the response to the angle of the drive is
+/// -w^2 (M - J) - J w^2 (k + i w c) / (k + i w c - J w^2): below the resonance the whole inertia M,
+/// above it M - J.
+#[test]
+fn force_at_a_drive_is_the_frequency_response_of_two_masses() {
+    let (total, c) = (5e-3, 0.05);
+    let inertia: &[f64] = &[total];
+    let chain = on_drive(
+        ConstantLaw(0.0),
+        &[("inertia", inertia), ("drive_compliance", &[K, c, J])],
+    );
+    let resonance = (K / J).sqrt();
+    for share in [0.2, 0.8, 1.5, 4.0] {
+        let omega = share * resonance;
+        let dt = TAU / omega / 1000.0;
+        // The free oscillation decays with the time constant 2 J / c.
+        let (settled, steps) = ((0.6 / dt) as usize, (0.6 / dt) as u32 + 1000);
+        let got = readings(&chain, dt, steps, |t| swing(omega, t));
+        // Quotient (re + i im) of (k + i w c) and (k - J w^2 + i w c).
+        let (stiff, damped) = (K - J * omega * omega, omega * c);
+        let square = stiff * stiff + damped * damped;
+        let re = (K * stiff + damped * damped) / square;
+        let im = damped * (stiff - K) / square;
+        let size = AMPLITUDE_M * omega * omega;
+        for (i, reading) in got.iter().enumerate().skip(settled) {
+            let (sin, cos) = (omega * dt * i as f64).sin_cos();
+            let expected = -size * ((total - J) * sin + J * (re * sin + im * cos));
+            let error = (reading - expected).abs();
+            assert!(error < 0.01 * size * total, "{share} {i}: {error}");
+        }
+    }
+}
+
+/// A stiff spring does not change the force of a drive.
+#[test]
+fn force_at_a_drive_with_a_stiff_spring_is_that_of_a_rigid_one() {
+    let inertia: (&str, &[f64]) = ("inertia", &[5e-3]);
+    let spring: (&str, &[f64]) = ("drive_compliance", &[1e7, 100.0, J]);
+    let (rigid, stiff) = (
+        on_drive(ConstantLaw(0.1), &[inertia]),
+        on_drive(ConstantLaw(0.1), &[inertia, spring]),
+    );
+    let forces = [rigid, stiff].map(|chain| readings(&chain, 1e-3, 2000, |t| swing(3.0, t)));
+    for (i, (a, b)) in forces[0].iter().zip(&forces[1]).enumerate() {
+        // After a reversal, the spring needs 7 ms to twist by 2 F / k.
+        let since_reversal_s = (3e-3 * i as f64 + 0.5 * PI) % PI / 3.0;
+        let turned = since_reversal_s < 0.01;
+        assert!(turned || (a - b).abs() < 0.01, "{i}: {a} {b}");
+    }
 }

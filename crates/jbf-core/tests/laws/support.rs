@@ -13,11 +13,11 @@ pub fn in_newtons() -> impl Iterator<Item = &'static Info> {
 
 /// Chain of a law and effects on a linear axis, represented by a shaft of radius 1 m.
 pub fn axis<T: Real, L>(law: L, effects: Effects<T>) -> Chain<T, L> {
-    let rig = Rig {
-        radius_m: T::ONE,
-        count: T::ONE,
-    };
-    Chain { law, effects, rig }
+    Chain {
+        law,
+        effects,
+        rig: Rig::default(),
+    }
 }
 
 struct Along<F> {

@@ -36,10 +36,10 @@ fn lean<T: Real>() {
         state::<T, Effects<T>>() > 4 * lag,
         "the catalogue keeps room for all"
     );
-    // Three numbers of the law, two of the rig, one of the drag and one of the lag.
+    // Three numbers of the law, three words of the rig, one of the drag and one of the lag.
     type Pair<T> = (CoulombDrag<T>, SensorLag<T>);
-    assert_eq!(size_of::<Chain<T, Coulomb<T>, ()>>(), 5 * number);
-    assert_eq!(size_of::<Chain<T, Coulomb<T>, Pair<T>>>(), 7 * number);
+    assert_eq!(size_of::<Chain<T, Coulomb<T>, ()>>(), 6 * number);
+    assert_eq!(size_of::<Chain<T, Coulomb<T>, Pair<T>>>(), 8 * number);
 }
 
 #[test]

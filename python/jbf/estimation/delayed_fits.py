@@ -84,7 +84,9 @@ class DelayedFit:
 
     def deviance_at(self, weights: Sequence[Array]) -> float:
         """Minus twice the log likelihood of the samples with these weights, one array per run."""
-        return self.motion.whitening(weights).deviance(self.solution.residuals)
+        solution = self.solution
+        residuals = solution.samples.without_deviations(solution.residuals, solution.noise)
+        return self.motion.whitening(weights).deviance(residuals)
 
 
 def fits_on_clocks(
@@ -280,9 +282,9 @@ def _gauss_newton_change(
     used = samples.within(
         [np.all(c, axis=0) for c in zip(*(f.samples.counted for f in fits), strict=True)]
     )
-    whitening = motion.whitening([w * c for w, c in zip(used.weight, used.counted, strict=True)])
+    used = replace(used.counted_only(), motion=motion)
     (before, j_before), (after, j_after) = (
-        whitening.stacked(fit.residuals, fit.jacobian) for fit in fits
+        used.stacked(fit.residuals, fit.jacobian, WHITE) for fit in fits
     )
     # Half of the gradient of the sum of squares, and its curvature, in units of `span_s`.
     slope = 0.25 * (unexplained_square(j_after, after) - unexplained_square(j_before, before))

@@ -23,6 +23,7 @@ import numpy.typing as npt
 
 from jbf._core import MotionWhitening
 from jbf.arrays import Array
+from jbf.estimation.random_effects import Basis
 from jbf.records.motion.estimated_motion import MotionErrors
 
 
@@ -126,12 +127,14 @@ class Whitening:
         residuals: Sequence[Array],
         jacobian: Sequence[Array],
         selection: Sequence[int] | None = None,
+        bases: Sequence[Basis] | None = None,
     ) -> tuple[Array, Array]:
         """Whitened residuals of standard deviation `noise` and their Jacobian, of all runs.
 
         The arguments are residuals (n,) and their derivatives (n, k), one array per run, in the
-        unit of the force, and optionally the indices of the runs to use. The result has the
-        residuals (m,) and the Jacobian (m, k) of the samples with a weight, all runs in one array.
+        unit of the force, and optionally the indices of the runs to use and the random effects of
+        all runs. The result has the residuals (m,) and the Jacobian (m, k) of the samples with a
+        weight, all runs in one array.
         """
         runs = list(range(len(residuals)) if selection is None else selection)
         columns = []
@@ -140,15 +143,21 @@ class Whitening:
             if self.by_delay is not None:
                 parts.append(self.by_delay[i])
             columns.append(np.column_stack(parts))
-        whitened = self.core.whiten(columns, runs)
-        stacked = np.concatenate(
-            [white.take(self._included[i], axis=0) for i, white in zip(runs, whitened, strict=True)]
-        )
+        blocks = self.whitened(columns, runs)
+        if bases is not None:
+            blocks = [bases[i].whitened(block) for i, block in zip(runs, blocks, strict=True)]
+        stacked = np.concatenate(blocks)
         if self.by_delay is not None:
             delay = stacked[:, -1]
             slopes = delay @ stacked[:, :-1] / max(float(delay @ delay), 1e-300)
             stacked = stacked[:, :-1] - np.outer(delay, slopes)
         return stacked[:, 0], stacked[:, 1:]
+
+    def whitened(self, columns: Sequence[Array], runs: Sequence[int]) -> list[Array]:
+        """Whitened columns (n, k) of the runs with these indices, at the samples with a weight."""
+        whitened = self.core.whiten(list(columns), list(runs))
+        pairs = zip(runs, whitened, strict=True)
+        return [white.take(self._included[i], axis=0) for i, white in pairs]
 
     def innovations(self, residuals: Sequence[Array]) -> list[Array]:
         """Whitened residuals of standard deviation `noise`, one array per run.

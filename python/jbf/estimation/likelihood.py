@@ -65,12 +65,10 @@ def _log_determinant(solution: Solution, count: int) -> float:
     samples = solution.samples
     if samples.motion is not None:
         log_determinant = samples.motion.whitening(samples.weight).log_determinant
-        return log_determinant - 2.0 * count * float(np.log(samples.motion.noise))
+        between = samples.log_determinant_between(solution.noise)
+        return log_determinant - 2.0 * count * float(np.log(samples.motion.noise)) + between
     weights = -2.0 * sum(float(np.sum(np.log(w[w > 0.0]))) for w in samples.weight)
-    if samples.between is None:
-        return weights
-    between = samples.between.log_determinant(samples.weight, samples.steps_s, solution.noise)
-    return weights + between
+    return weights + samples.log_determinant_between(solution.noise)
 
 
 _shares: WeakKeyDictionary[Solution, float] = WeakKeyDictionary()

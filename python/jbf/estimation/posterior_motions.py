@@ -202,7 +202,20 @@ def aligned(before: Campaign, delays_s: Array, margin_s: float = 0.0) -> Campaig
         prepared = tuple(p.shifted(0.0, 0.0, margin_s) for p in prepared)
     shifts = zip(prepared, delays_s.tolist(), strict=True)
     prepared = tuple(p if delay_s == 0.0 else p.shifted(delay_s, 0.0) for p, delay_s in shifts)
-    return replace(before, prepared=prepared, samples=Samples.of(prepared, before.settings))
+    samples, between = Samples.of(prepared, before.settings), before.samples.between
+    if between is not None:
+        kept = [kept_readings(p, q) for p, q in zip(before.prepared, prepared, strict=True)]
+        samples = replace(samples, between=between.sliced(kept))
+    return replace(before, prepared=prepared, samples=samples)
+
+
+def kept_readings(before: Prepared, after: Prepared) -> slice:
+    """Readings of a run that a shift keeps; it may drop some from the start and from the end."""
+    readings, kept = before.readings_n, len(after.readings_n)
+    starts = range(len(readings) - kept + 1)
+    found = (k for k in starts if np.array_equal(readings[k : k + kept], after.readings_n))
+    start = next(found, 0)
+    return slice(start, start + kept)
 
 
 def corrected_for_delay(before: Campaign, delay_s: float, margin_s: float = 0.0) -> Campaign:
@@ -249,10 +262,11 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         for derivatives in sensitivity:
             derivatives[:, 2] += mass
     weights = solution.samples.weight
+    residuals = solution.samples.without_deviations(solution.residuals, solution.noise)
     errors = tuple(p.motion.errors for p in prepared)
     motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
     largest = max(float(np.max(np.abs(f), initial=0.0)) for f in predicted)
-    most = max(solution.samples.rms(solution.residuals), EXACT_RECORD * largest, 1e-150)
+    most = max(solution.samples.rms(residuals), EXACT_RECORD * largest, 1e-150)
     settings = problem.campaign.settings.motion
     smallest = settings.min_noise_share * solution.samples.rms(predicted)
     lowest = float(np.clip(np.log(max(smallest, 1e-150) / most), LEAST_NOISE, 0.0))
@@ -272,7 +286,7 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         noise.
         """
         unit = at(log_ratio, 0.0).whitening(weights)
-        squares = unit.deviance(solution.residuals) - unit.log_determinant
+        squares = unit.deviance(residuals) - unit.log_determinant
 
         # The derivative is zero where y exp(2 y) = (squares / precision) exp(2 offset), with
         # y = offset + log_noise. With w = 2 y, this is w + log(w) = z, whose solution is the

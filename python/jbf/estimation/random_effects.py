@@ -16,7 +16,6 @@ import numpy as np
 from scipy import special
 
 from jbf.arrays import Array
-from jbf.estimation.noise import Noise
 
 ROUNDING = 1e-9
 """Fraction of the total precision below which that of the other runs is treated as zero."""
@@ -75,56 +74,54 @@ class RandomEffects:
         directions = tuple(d[:, kept] for d in self.directions)
         return replace(self, names=tuple(self.names[k] for k in kept), directions=directions)
 
-    def whitened(
-        self, run: int, stacked: Sequence[Array], weight: Array, step_s: float, noise: Noise
-    ) -> list[Array]:
-        """Innovations of a run with the correlation due to its random effects removed.
+    def sliced(self, slices: Sequence[slice]) -> RandomEffects:
+        """Return the random effects of the samples in the slices, one slice per run."""
+        pairs = zip(self.directions, slices, strict=True)
+        return replace(self, directions=tuple(d[kept] for d, kept in pairs))
 
-        The innovations are weighted and exclude the gaps of the run.
-        """
-        u, size = self._basis(run, weight, step_s, noise)
-        share = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None]
 
-        def white(values: Array) -> Array:
-            """Values without the part of their correlation that is due to the random effects."""
-            columns = values if values.ndim == 2 else values[:, None]
-            return np.asarray((columns - u @ (share * (u.T @ columns))).reshape(values.shape))
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Random effects of one run in its whitened samples.
 
-        return [white(values) for values in stacked]
+    Attributes
+    ----------
+    direction
+        Contribution of the random effects to the whitened samples, in standard deviations of the
+        innovations, shape (m, q).
+    u, size
+        Left singular vectors, (m, q), and singular values, (q,), of `direction`. The correlation of
+        the run is the identity matrix plus ``u diag(size^2) u'``.
+    """
 
-    def log_determinant(
-        self, weight: Sequence[Array], steps_s: Sequence[float], noise: Noise
-    ) -> float:
-        """Log determinant of the correlation of the runs due to the random effects.
+    direction: Array
+    u: Array
+    size: Array
+
+    @classmethod
+    def of(cls, direction: Array) -> Basis:
+        """Create the basis of random effects with these contributions, shape (m, q)."""
+        u, size, _ = np.linalg.svd(direction, full_matrices=False)
+        return cls(direction, u, size)
+
+    def whitened(self, columns: Array) -> Array:
+        """Columns (m, k) or (m,) with the correlation due to the random effects removed."""
+        share = 1.0 - 1.0 / np.sqrt(1.0 + self.size**2)
+        along = self.u.T @ columns
+        return np.asarray(columns - self.u @ (share.reshape(-1, *[1] * (columns.ndim - 1)) * along))
+
+    @property
+    def log_determinant(self) -> float:
+        """Log determinant of the correlation due to the random effects.
 
         This is the penalty for the random effects in minus twice the log likelihood.
         """
-        sizes = [
-            self._basis(i, w, step, noise)[1]
-            for i, (w, step) in enumerate(zip(weight, steps_s, strict=True))
-        ]
-        return float(np.sum(np.log1p(np.concatenate(sizes) ** 2)))
+        return float(np.sum(np.log1p(self.size**2)))
 
-    def predicted(
-        self, run: int, residual: Array, weight: Array, step_s: float, noise: Noise
-    ) -> Array:
-        """Best linear prediction of the random effects in a run's friction, N."""
-        n = self._innovations(run, weight, step_s, noise)
-        r = noise.innovations(residual * weight, step_s)[weight > 0.0] / self.sigma_n
-        size = np.linalg.solve(n.T @ n + np.eye(n.shape[1]), n.T @ r)
-        return np.asarray(self.directions[run] @ size)
+    def predicted(self, innovations: Array) -> Array:
+        """Best linear prediction of the deviations, in their standard deviations, shape (q,).
 
-    def _basis(self, run: int, weight: Array, step_s: float, noise: Noise) -> tuple[Array, Array]:
-        """Left singular vectors, (n, q), and singular values, (q,), of `_innovations` for a run.
-
-        The correlation of the run due to the random effects is the identity matrix plus
-        ``u diag(size^2) u'``.
+        `innovations` are those of the run, in standard deviations, shape (m,).
         """
-        n = self._innovations(run, weight, step_s, noise)
-        u, size, _ = np.linalg.svd(n, full_matrices=False)
-        return u, size
-
-    def _innovations(self, run: int, weight: Array, step_s: float, noise: Noise) -> Array:
-        """Whitened contributions of the random effects to a run, in standard deviations, (n, q)."""
-        directions = self.directions[run] * weight[:, None]
-        return noise.innovations(directions, step_s)[weight > 0.0] / self.sigma_n
+        n = self.direction
+        return np.asarray(np.linalg.solve(n.T @ n + np.eye(n.shape[1]), n.T @ innovations))

@@ -23,7 +23,7 @@ from jbf.arrays import Array, Mask
 from jbf.estimation.errors_in_motion import ErrorsInMotion, Whitening
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.random_effects import RandomEffects
+from jbf.estimation.random_effects import Basis, RandomEffects
 from jbf.estimation.settings import DEFAULT, Settings
 
 T = TypeVar("T", bound=np.generic)
@@ -166,21 +166,51 @@ class Samples:
         `selection` has the indices of the runs. A sample without weight is a gap: a zero is passed
         to the noise filter there.
         """
+        runs = list(range(len(residuals)) if selection is None else selection)
         if self.motion is not None:
-            return self._whitening.stacked(residuals, jacobian, selection)
-        r, j = [], []
-        for i in range(len(residuals)) if selection is None else selection:
-            w, step = self.weight[i], self.steps_s[i]
-            keep = w > 0.0
-            rows = [
-                noise.innovations(residuals[i] * w, step)[keep],
-                noise.innovations(jacobian[i] * w[:, None], step)[keep],
-            ]
+            bases = None
             if self.between is not None:
-                rows = self.between.whitened(i, rows, w, step, noise)
+                bases = [self.basis(i, noise) for i in range(len(self.runs))]
+            return self._whitening.stacked(residuals, jacobian, runs, bases)
+        r, j = [], []
+        for i in runs:
+            rows = [self._of_run(i, values[i], noise) for values in (residuals, jacobian)]
+            if self.between is not None:
+                basis = self.basis(i, noise)
+                rows = [basis.whitened(values) for values in rows]
             r.append(rows[0])
             j.append(rows[1])
         return np.concatenate(r), np.concatenate(j)
+
+    def _of_run(self, run: int, values: Array, noise: Noise) -> Array:
+        """Weighted innovations of values (n,) or (n, k) of a run, at the samples with a weight."""
+        weight = self.weight[run]
+        if self.motion is not None:
+            columns = values if values.ndim == 2 else values[:, None]
+            (white,) = self._whitening.whitened([columns], [run])
+            return white if values.ndim == 2 else white[:, 0]
+        weighted = values * (weight if values.ndim == 1 else weight[:, None])
+        return noise.innovations(weighted, self.steps_s[run])[weight > 0.0]
+
+    def basis(self, run: int, noise: Noise) -> Basis:
+        """Random effects of a run, which must be known, in its innovations."""
+        assert self.between is not None
+        key = (run, None if self.motion is not None else noise)
+        if key not in self._bases:
+            direction = self._of_run(run, self.between.directions[run], noise)
+            self._bases[key] = Basis.of(direction / self.between.sigma_n)
+        return self._bases[key]
+
+    @cached_property
+    def _bases(self) -> dict[tuple[int, Noise | None], Basis]:
+        """Random effects of runs in the innovations of a noise model, as far as they are known."""
+        return {}
+
+    def log_determinant_between(self, noise: Noise) -> float:
+        """Log determinant of the correlation of all runs due to their random effects."""
+        if self.between is None:
+            return 0.0
+        return sum(self.basis(i, noise).log_determinant for i in range(len(self.runs)))
 
     def whitened(
         self, residuals: Sequence[Array], noise: Noise, selection: Sequence[int] | None = None
@@ -201,10 +231,11 @@ class Samples:
         """Residuals without the predicted random effects of their runs, N, one array per run."""
         if self.between is None:
             return list(residuals)
-        return [
-            r - self.between.predicted(i, r, self.weight[i], self.steps_s[i], noise)
-            for i, r in enumerate(residuals)
-        ]
+        sigma_n, without = self.between.sigma_n, []
+        for i, r in enumerate(residuals):
+            sizes = self.basis(i, noise).predicted(self._of_run(i, r, noise) / sigma_n)
+            without.append(r - self.between.directions[i] @ sizes)
+        return without
 
     def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Innovations of weighted residuals, one array per run; zero at samples without weight."""

@@ -152,17 +152,23 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
 
 
 def drive_sentences(diagnosis: Diagnosis) -> str:
-    """State the share of the motion's errors, and effects that fit as well as a machine term.
+    """State the shares of the runs' deviations and of the motion's errors in the mean square.
 
-    Empty if the share is below `SHOWN_SHARE` and no effect does. The share is omitted if forces
-    that the model lacks increase the estimated errors of the motion.
+    Also states which effects fit as well as a machine term. A share below `SHOWN_SHARE` is
+    omitted, and that of the motion's errors also if forces that the model lacks increase it.
     """
     samples, sentences = diagnosis.after.samples, []
+    between = _share_between_runs(diagnosis)
+    if between >= SHOWN_SHARE:
+        percent = f"{100.0 * between:.0f} %"
+        sentences.append(f"About {percent} of the mean square are differences between the runs.")
     share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
     too_large = any(r.axis in ("motion", "momentum") for r in diagnosis.residual_structure)
     if samples.motion is not None and share >= SHOWN_SHARE and not too_large:
+        share *= 1.0 - between
         if not diagnosis.residual_structure:  # the residual has no other part
-            share = max(share, 1.0 - (samples.motion.noise / diagnosis.steps[-1].rms) ** 2)
+            noise_share = (samples.motion.noise / diagnosis.steps[-1].rms) ** 2
+            share = max(share, 1.0 - between - noise_share)
         percent = f"{100.0 * share:.0f} %"
         sentences.append(f"About {percent} of the mean square are errors of the estimated motion.")
     sentences += [
@@ -171,6 +177,13 @@ def drive_sentences(diagnosis: Diagnosis) -> str:
         if (alternatives := diagnosis.alternatives.get(name, ()))
     ]
     return "".join(f" {sentence}" for sentence in sentences)
+
+
+def _share_between_runs(diagnosis: Diagnosis) -> float:
+    """Share of the estimated deviations of the runs in the mean square of the residual, 0 to 1."""
+    samples, residuals = diagnosis.after.samples, diagnosis.after.residuals
+    within = samples.without_deviations(residuals, diagnosis.fit.noise)
+    return max(0.0, 1.0 - (samples.rms(within) / max(samples.rms(residuals), 1e-300)) ** 2)
 
 
 def _coloured_noise_sentence(diagnosis: Diagnosis) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from by_hand import Array, assert_recovered, coulomb
-from jbf import Rig, Run, diagnose
+from jbf import Drive, Rig, Run, diagnose
 from jbf.diagnosis.terms.proposal import Proposal, is_accepted
 from jbf.diagnosis.terms.random_effects import random_effect
 from jbf.estimation.campaign import Campaign
@@ -14,6 +14,7 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
+from known_motions import quantised
 from linear_campaigns import fit_from_truth, reversing_runs
 from term_models import model_of
 
@@ -114,7 +115,7 @@ def test_gain_of_a_random_effect_is_reduced_by_the_log_determinant() -> None:
     found = clearest(problem, solution)
     centred = [e - np.mean(e[c]) for e, c in zip(solution.residuals, samples.counted, strict=True)]
     gain = samples.cost(solution.residuals, solution.noise) - samples.cost(centred, WHITE)
-    volume = found.campaign.samples.between.log_determinant(samples.weight, samples.steps_s, WHITE)
+    volume = found.campaign.samples.log_determinant_between(WHITE)
     assert volume > 0.0
     assert found.gain == pytest.approx(gain - volume, rel=0.02)
 
@@ -150,3 +151,36 @@ def test_effect_and_offsets_that_differ_by_run_are_identified_together() -> None
     sizes = {f.kind: f.size for f in found.findings}
     assert sizes["level_by_run"] == pytest.approx(np.std(offsets_n, ddof=1), rel=0.2)
     assert_recovered(found.fit.parameters["inertia.m_e"], 2.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "deviations"),
+    [
+        ("level_by_run", [0.0, 0.3, -0.25, 0.1, -0.1, 0.4]),
+        ("gain_by_run", [0.0, 0.06, -0.07, 0.02, -0.04, 0.08]),
+    ],
+)
+def test_deviation_of_a_run_is_found_next_to_errors_of_the_motion(
+    kind: str, deviations: list[float]
+) -> None:
+    """A position in counts: the errors of the acceleration are estimated as well."""
+    random, runs = np.random.default_rng(12), []
+    t = np.arange(0.0, 12.0, 0.005)
+    for i, deviation in enumerate(deviations):
+        rate = 2.0 + 0.4 * i
+        x = 0.5 * np.sin(rate * t) + 0.2 * np.sin(1.618 * rate * t + i)
+        v = 0.5 * rate * np.cos(rate * t) + 0.3236 * rate * np.cos(1.618 * rate * t + i)
+        a = -0.5 * rate**2 * np.sin(rate * t)
+        a -= 0.5236 * rate**2 * np.sin(1.618 * rate * t + i)
+        force = 3.0 * np.sign(v) + 2.0 * v + 0.6 * a
+        force += deviation * SHAPES[kind](np.zeros(len(t)), force)
+        force += 0.06 * random.standard_normal(len(t))
+        counted = quantised(x, 5e-4)
+        runs.append(Run.from_arrays(t, None, force, position_m=counted, name=f"run {i}"))
+    found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
+    assert (found.verdict, found.effects) == ("adequate", ())
+    assert found.after.samples.motion is not None
+    (size,) = (f.size for f in found.findings if f.kind == kind)
+    assert size == pytest.approx(np.std(deviations, ddof=1), rel=0.2)
+    assert_recovered(found.fit.parameters["F_v"], 2.0, share=0.001)
+    assert_recovered(found.fit.parameters["inertia.m_e"], 0.6, share=0.001)

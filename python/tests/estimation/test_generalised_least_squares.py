@@ -1,6 +1,7 @@
 """Fits that account for the errors of the motion and a delay of the force."""
 
 import dataclasses
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import WHITE
 from jbf.estimation.posterior_motions import estimate_motion_errors
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.samples import Samples
 from jbf.records.motion.estimated_motion import estimate_motion
 
@@ -235,6 +237,31 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
     # Starting values are compared by the squares that the fit minimises.
     samples = Samples(("a",), (0.01,), (weight > 0.0,), (weight,), motion=model)
     assert samples.square([residual]) == pytest.approx(float(white @ white))
+
+
+def test_likelihood_with_motion_errors_and_a_run_offset_is_that_of_their_sum() -> None:
+    """The dense covariance of the errors follows from the filter applied to unit vectors."""
+    errors: Any = estimate_motion(drive(3), None).errors
+    n, offset_sd = len(errors.covariance), 0.7
+    sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
+    motion = ErrorsInMotion((errors,), (sensitivity,), NOISE)
+    weight, random = np.ones(n), np.random.default_rng(4)
+    residual = drawn_residual(errors, sensitivity, 1.0, random) + 0.9
+    samples = Samples(("a",), (0.01,), (weight > 0.0,), (weight,), motion=motion)
+    _, filtered = samples.stacked([residual], [np.eye(n)], WHITE)
+    inverse = np.linalg.inv(filtered)
+    covariance = NOISE**2 * inverse @ inverse.T + offset_sd**2
+    between = RandomEffects(("zero",), (np.full((n, 1), offset_sd),), NOISE)
+    both = replace(samples, between=between)
+    square = float(residual @ np.linalg.solve(covariance, residual))
+    white = both.whitened([residual], WHITE)
+    assert float(white @ white) / NOISE**2 == pytest.approx(square, rel=1e-6)
+    determinants = motion.whitening([weight]).log_determinant + both.log_determinant_between(WHITE)
+    assert determinants == pytest.approx(np.linalg.slogdet(covariance)[1], rel=1e-6)
+    # The best linear prediction of the offset is its conditional mean.
+    (within,) = both.without_deviations([residual], WHITE)
+    mean = offset_sd**2 * np.sum(np.linalg.solve(covariance, residual))
+    assert residual - within == pytest.approx(np.full(n, mean), rel=1e-6)
 
 
 @pytest.mark.parametrize("scale", [0.3, 1.0, 3.0])

@@ -19,6 +19,7 @@ from jbf.estimation.generalised_least_squares import (
 from jbf.estimation.held_out import held_out_parts
 from jbf.estimation.held_out_comparison import predictive_deviance
 from jbf.estimation.noise import WHITE
+from jbf.estimation.posterior_motions import kept_readings
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 
@@ -45,8 +46,8 @@ def errors_of_motion(model: Model) -> Proposal | None:
     # If the delay changed, the samples of `again` differ from those of `campaign`.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
     weights_before, weights_after = _common_weights((campaign, reference), (again.campaign, after))
-    gain = old.whitening(weights_before).deviance(reference.residuals)
-    gain -= new.whitening(weights_after).deviance(after.residuals)
+    gain = old.whitening(weights_before).deviance(_without_deviations(reference))
+    gain -= new.whitening(weights_after).deviance(_without_deviations(after))
 
     @cache
     def held_out_gain() -> float:
@@ -68,6 +69,11 @@ def _held_out_deviance(
     log_determinant = motion.whitening(weights).log_determinant
     variance = motion.noise**2
     return predictive_deviance(solution, parts, samples, WHITE, variance) + log_determinant
+
+
+def _without_deviations(solution: Solution) -> list[Array]:
+    """Residuals without the random effects of their runs, N."""
+    return solution.samples.without_deviations(solution.residuals, solution.noise)
 
 
 def _without_errors(solution: Solution) -> ErrorsInMotion:
@@ -94,9 +100,7 @@ def _common_weights(
         other.samples.weight,
         strict=True,
     ):
-        lost = len(weight) - len(used)
-        at_start = lost > 0 and np.array_equal(p.readings_n[lost:], q.readings_n)
-        kept = slice(lost, None) if at_start else slice(0, len(used))
+        kept = kept_readings(p, q)
         common = np.where(used > 0.0, weight[kept], 0.0)
         whole = np.zeros(len(weight))
         whole[kept] = common

@@ -31,11 +31,9 @@ from jbf.records.findings.finding import Finding
 def random_effect(model: Model) -> Proposal | None:
     """Propose the most significant random effect that is not yet in the model.
 
-    Returns None if none is significant, or if the likelihood includes motion errors.
+    Returns None if none is significant.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
-    if campaign.samples.motion is not None:
-        return None
     counted = campaign.samples.within(solution.samples.counted)
     estimate = _most_significant(problem, solution, counted, model.policy.terms.chance)
     if estimate is None:
@@ -72,17 +70,10 @@ def without_random_effect(model: Model) -> Campaign | None:
 
 def _gain(richer: Solution, simpler: Solution) -> float:
     """Gain of the random effects in a model, in twice the log marginal likelihood."""
-    penalty = _log_determinant(richer) - _log_determinant(simpler)
+    penalty = richer.samples.log_determinant_between(richer.noise)
+    penalty -= simpler.samples.log_determinant_between(simpler.noise)
     gain = simpler.samples.cost(simpler.residuals, simpler.noise) - richer.cost
     return independent_fraction(richer, simpler) * gain - penalty
-
-
-def _log_determinant(solution: Solution) -> float:
-    """Log-determinant of the random effects' contribution to the covariance of a solution."""
-    samples = solution.samples
-    if samples.between is None:
-        return 0.0
-    return samples.between.log_determinant(samples.weight, samples.steps_s, solution.noise)
 
 
 def _most_significant(

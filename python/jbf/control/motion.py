@@ -10,6 +10,7 @@ from jbf.arrays import Array
 from jbf.control.bench import THESIS_BENCH, Bench
 from jbf.control.task import RECORDED, Task
 from jbf.errors import InputError
+from jbf.records.angles import continuous
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -59,7 +60,7 @@ def follow(
     radius_m = 1.0 if rig.bearing is None else rig.bearing.radius_m
     values = recorded.velocity / radius_m
     if not recorded.speed_recorded and recorded.angle_rad is not None:
-        values = np.gradient(np.unwrap(recorded.angle_rad), recorded.time_s)
+        values = np.gradient(continuous(recorded.angle_rad), recorded.time_s)
     if control == "position":
         where = recorded.angle_rad if rig.bearing is not None else recorded.position_m
         if where is None:

@@ -40,6 +40,7 @@ from jbf.models.catalogue import Parameter
 from jbf.models.driven_motion import driven_motion
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.angles import continuous
 from jbf.records.arguments import check_callable, checked_integer, of_kind
 from jbf.records.motion.roughness import encoder_step
 from jbf.records.run import Run
@@ -261,7 +262,7 @@ def simulated_readings(prepared: Prepared, friction: Array, random: np.random.Ge
         velocity = run.velocity
     angle, position = run.angle_rad, run.position_m
     if angle is not None and "angle_rad" not in motion.aside:
-        angle = _simulated_path(np.unwrap(angle), motion.angle_rad, moving, random)
+        angle = _simulated_path(continuous(angle), motion.angle_rad, moving, random)
     if position is not None and "position_m" not in motion.aside:
         arm = prepared.rig.bearing.radius_m if prepared.rig.bearing is not None else 1.0
         position = _simulated_path(position, motion.angle_rad * arm, moving, random)

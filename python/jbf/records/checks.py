@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from jbf.arrays import Array
 from jbf.errors import InputError, quoted
+from jbf.records.angles import continuous
 from jbf.records.counts import count_of
 
 MIN_SAMPLES = 10
@@ -74,7 +75,7 @@ def frozen(values: npt.ArrayLike) -> Array:
 
 def unwrapped(column: str, values: Array) -> Array:
     """Return the values of a column, without the jumps of an angle that restarts at each turn."""
-    return np.unwrap(values) if column in ANGLES else values
+    return continuous(values) if column in ANGLES else values
 
 
 def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:

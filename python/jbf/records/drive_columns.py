@@ -12,10 +12,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from jbf.arrays import Array
 from jbf.errors import InputError
+from jbf.records.angles import continuous
 from jbf.records.checks import frozen
 from jbf.records.drive import Drive
 from jbf.records.findings.finding import Finding
@@ -134,7 +133,7 @@ class DriveColumns:
             size = sizes[column]
             values = renamed.pop(column)
             if column in _TURNED and size != 1.0:
-                values = _unwrapped(values)
+                values = continuous(values)
             renamed[target] = values if size == 1.0 else frozen(values * size)
             # A gear ratio of 1 may have been omitted by mistake.
             if size != 1.0 or column.startswith("motor_"):
@@ -207,12 +206,6 @@ def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
     if columns.drive.friction == "torque":
         remedies["torque_n_m"] = "rename it to motor_torque_n_m if it is the motor's"
     return remedies
-
-
-def _unwrapped(angle: Array) -> Array:
-    """Unwrap an angle that restarts at each turn; return a multi-turn angle unchanged."""
-    wraps = float(np.ptp(angle)) <= 2.0 * math.pi * (1.0 + 1e-9)
-    return np.unwrap(angle) if wraps else angle
 
 
 def _not_read(name: str, target: str, unread: str, column: str) -> Finding:

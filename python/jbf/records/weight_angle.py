@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from jbf.arrays import Array
 from jbf.errors import InputError
+from jbf.records.angles import continuous
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -22,7 +21,7 @@ def weight_offset(rig: Rig, run: Run, angle_rad: Array) -> Array | None:
     """
     if rig.quantities.motion != "rotary" or WEIGHT_ANGLE not in run.extra:
         return None
-    offset: Array = np.unwrap(run.extra[WEIGHT_ANGLE]) - angle_rad
+    offset: Array = continuous(run.extra[WEIGHT_ANGLE]) - angle_rad
     return offset
 
 

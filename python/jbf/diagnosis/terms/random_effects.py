@@ -31,19 +31,28 @@ from jbf.records.findings.finding import Finding
 def random_effect(model: Model) -> Proposal | None:
     """Propose the most significant random effect that is not yet in the model.
 
-    Returns None if none is significant.
+    If it does not have enough evidence, the next one is added to the proposal: with a drift, the
+    residual is correlated, and an offset has little evidence alone. Returns None if no random
+    effect is significant, otherwise the proposal with the fewest random effects that has evidence,
+    or that with the largest evidence.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
-    counted = campaign.samples.within(solution.samples.counted)
-    estimate = _most_significant(problem, solution, counted, model.policy.terms.chance)
-    if estimate is None:
-        return None
-    between, finding = estimate
-    after = refitted(problem, solution, replace(counted, between=between))
-    samples = replace(campaign.samples, between=between)
-    again = replace(campaign, samples=samples).with_findings([finding])
-    gain = _gain(after, replace(solution, samples=counted))
-    return Proposal(again, problem, after, gain, price_of_term(model.policy))
+    before = replace(solution, samples=campaign.samples.within(solution.samples.counted))
+    after, findings, proposals = before, list[Finding](), list[Proposal]()
+    while True:
+        estimate = _most_significant(problem, after, after.samples, model.policy.terms.chance)
+        if estimate is None:
+            break
+        between, finding = estimate
+        findings.append(finding)
+        after = refitted(problem, after, replace(before.samples, between=between))
+        samples = replace(campaign.samples, between=between)
+        again = replace(campaign, samples=samples).with_findings(findings)
+        price = price_of_term(model.policy, len(findings))
+        proposals.append(Proposal(again, problem, after, _gain(after, before), price))
+        if proposals[-1].evidence > 0.0:
+            return proposals[-1]
+    return max(proposals, key=lambda proposal: proposal.evidence, default=None)
 
 
 def without_random_effect(model: Model) -> Campaign | None:

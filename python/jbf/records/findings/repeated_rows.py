@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from jbf.arrays import Mask
+from jbf.records.angles import continuous
 from jbf.records.checks import SLOW
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import step_of
@@ -33,7 +34,7 @@ def repeated_rows(run: Run) -> Mask | None:
     place = run.angle_rad if run.angle_rad is not None else run.position_m
     if place is None or not run.speed_recorded or run.read:
         return None
-    place = np.unwrap(place) if place is run.angle_rad else place
+    place = continuous(place) if place is run.angle_rad else place
     steps, path_steps = np.diff(run.time_s), np.abs(np.diff(place))
     by_speed = np.abs(run.velocity[:-1]) * steps
     # The ratio of the total displacements cancels the unit of the speed.

@@ -21,6 +21,7 @@ import numpy as np
 from jbf._core import MotionErrorChain
 from jbf.arrays import Array, Mask
 from jbf.errors import InputError
+from jbf.records.angles import continuous
 from jbf.records.checks import frozen
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of
@@ -309,7 +310,7 @@ def estimate_motion(
         velocity[0] = 0.0
     angle = smooth_path / (radius_m or records.arm_m)
     if records.path is None and radius_m is None and run.angle_rad is not None:
-        angle = np.unwrap(run.angle_rad)
+        angle = continuous(run.angle_rad)
     return EstimatedMotion(
         velocity,
         acceleration,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jbf.arrays import Array
+from jbf.records.angles import continuous
 from jbf.records.motion.ratio import metres_per_unit
 from jbf.records.run import Run
 
@@ -38,11 +39,11 @@ class Position:
 def recorded_position(run: Run, radius_m: float | None) -> Position | None:
     """Recorded path of a run, m; None if only the speed was recorded."""
     if run.angle_rad is not None and radius_m is not None:
-        return Position(np.unwrap(run.angle_rad) * radius_m, "angle_rad", "rad", radius_m)
+        return Position(continuous(run.angle_rad) * radius_m, "angle_rad", "rad", radius_m)
     if run.position_m is not None:
         return Position(run.position_m, "position_m", "m", 1.0)
     if run.angle_rad is not None and run.speed_recorded:
-        return _position_from_ratio(run.time_s, np.unwrap(run.angle_rad), run.velocity)
+        return _position_from_ratio(run.time_s, continuous(run.angle_rad), run.velocity)
     return None
 
 

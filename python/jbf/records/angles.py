@@ -1,0 +1,25 @@
+"""Angles that restart at each turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jbf.arrays import Array
+
+TURN = 2.0 * np.pi
+"""One turn, rad."""
+
+
+def continuous(angle: Array) -> Array:
+    """Return an angle, rad, without the jumps of an encoder that restarts at each turn.
+
+    An angle that counts the turns is returned unchanged, although a fast shaft turns by more than
+    half a turn between two samples. Of the recorded and the unwrapped angle (`numpy.unwrap`), the
+    one whose steps change less is returned.
+    """
+    steps = np.diff(angle)
+    if not np.any(np.abs(steps) > 0.5 * TURN):
+        return angle
+    unwrapped: Array = np.unwrap(angle)
+    changes = [float(np.sum(np.abs(np.diff(a, 2)))) for a in (angle, unwrapped)]
+    return unwrapped if changes[1] < changes[0] else angle

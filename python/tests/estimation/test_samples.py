@@ -154,6 +154,11 @@ def deviations(runs: int = 2) -> RandomEffects:
     return RandomEffects(("zero", "wave"), tuple(directions), SIGMA_N)
 
 
+def correlated(between: RandomEffects, weight: Array) -> Samples:
+    """Samples of two runs with random effects and the same weights."""
+    return Samples(("a", "b"), (STEP_S,) * 2, (weight > 0.0,) * 2, (weight,) * 2, between)
+
+
 def weights() -> Array:
     """Weights of samples: zero at four of them, 0.2 to 1 at the others."""
     weight = np.random.default_rng(1).uniform(0.2, 1.0, N)
@@ -177,7 +182,9 @@ def test_whitening_with_random_effects_uses_the_inverse_covariance(noise: Noise,
     z = filtered(noise, between.directions[run], weight) / SIGMA_N
     root = np.linalg.cholesky(np.eye(len(e)) + z @ z.T)
     wanted = linalg.solve_triangular(root, e, lower=True)
-    found, vector = between.whitened(run, [e, e[:, 1]], weight, STEP_S, noise)
+    vector, found = correlated(between, weight).stacked(
+        [values[:, 1]] * 2, [values] * 2, noise, [run]
+    )
     np.testing.assert_allclose(found.T @ found, wanted.T @ wanted, rtol=1e-10, atol=1e-10)
     np.testing.assert_allclose(vector, found[:, 1], rtol=1e-12)
 
@@ -191,10 +198,11 @@ def test_predicted_random_effect_is_a_ridge_regression_over_weighted_samples(noi
     e = filtered(noise, residual, weight)
     rows = np.vstack([z, SIGMA_N * np.eye(2)])
     size, *_ = np.linalg.lstsq(rows, np.concatenate([e, np.zeros(2)]), rcond=None)
-    found = between.predicted(1, residual, weight, STEP_S, noise)
-    np.testing.assert_allclose(found, between.directions[1] @ size, rtol=1e-9, atol=1e-12)
     spoilt = residual + 1e3 * (weight == 0.0)
-    np.testing.assert_array_equal(between.predicted(1, spoilt, weight, STEP_S, noise), found)
+    samples = correlated(between, weight)
+    for recorded in (residual, spoilt):
+        found = recorded - samples.without_deviations([recorded] * 2, noise)[1]
+        np.testing.assert_allclose(found, between.directions[1] @ size, rtol=1e-9, atol=1e-9)
 
 
 @NOISES
@@ -202,7 +210,7 @@ def test_cost_and_determinant_with_random_effects_are_those_of_a_correlated_norm
     noise: Noise,
 ) -> None:
     between, weight = deviations(), weights()
-    samples = Samples(("a", "b"), (STEP_S,) * 2, (weight > 0.0,) * 2, (weight,) * 2, between)
+    samples = correlated(between, weight)
     residuals = list(np.random.default_rng(7).standard_normal((2, N)))
     square = count = determinant = 0.0
     for i in range(2):
@@ -213,8 +221,7 @@ def test_cost_and_determinant_with_random_effects_are_those_of_a_correlated_norm
         determinant += float(np.linalg.slogdet(covariance)[1])
         count += len(e)
     assert samples.cost(residuals, noise) == pytest.approx(count * np.log(square / count))
-    found = between.log_determinant(samples.weight, samples.steps_s, noise)
-    assert found == pytest.approx(determinant)
+    assert samples.log_determinant_between(noise) == pytest.approx(determinant)
     swapped = samples.only([1, 0]).cost(residuals[::-1], noise)
     assert swapped == pytest.approx(samples.cost(residuals, noise), rel=1e-12)
 

@@ -178,6 +178,13 @@ gap_begun = False
 }
 """States of the drive effects by name, in the order of the chain."""
 
+INERTIA_WITH_SPRING = """
+accelerating = inertia_m_e * acceleration + spring_inertia
+extra += accelerating
+transmitted += accelerating
+"""
+"""The effect `inertia` of a drive with `drive_compliance`."""
+
 RESIST = """
 viscous = 0.0
 if not v == 0.0:

@@ -379,9 +379,8 @@ OTHER: dict[str, str] = {
     "coulomb_drag": "drag += coulomb_drag_F_d",
     "quadratic_drag": "extra += quadratic_drag_c * v * abs(v)",
     "inertia": """
-accelerating = inertia_m_e * acceleration
-extra += accelerating
-transmitted += accelerating
+extra += inertia_m_e * acceleration
+transmitted += inertia_m_e * acceleration
 """,
     "zero_load_dependence": "extra += zero_load_dependence_k * load",
     "gravity": """
@@ -395,13 +394,6 @@ transmitted += weight
     "cogging_2": _COGGING.format(e="cogging_2"),
 }
 """Effects next to the contact by name, in the order of the chain."""
-
-INERTIA_WITH_SPRING = """
-accelerating = inertia_m_e * acceleration + spring_inertia
-extra += accelerating
-transmitted += accelerating
-"""
-"""The effect `inertia` of a drive with `drive_compliance`."""
 
 TRANSMISSION = {"torque_proportional": "jump += torque_proportional_mu * abs(transmitted)"}
 """Effects of the transmitted force by name."""

@@ -7,11 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from jbf.export import drive_equations, memory_equations
-from jbf.export.drive_equations import DIRECTION, DRIVE, RESIST
+from jbf.export.drive_equations import DIRECTION, DRIVE, INERTIA_WITH_SPRING, RESIST
 from jbf.export.equations import (
     CONTACT,
     FUNCTIONS,
-    INERTIA_WITH_SPRING,
     LAWS,
     OTHER,
     PRESLIDING,

@@ -14,8 +14,8 @@ def continuous(angle: Array) -> Array:
     """Return an angle, rad, without the jumps of an encoder that restarts at each turn.
 
     An angle that counts the turns is returned unchanged, although a fast shaft turns by more than
-    half a turn between two samples. Of the recorded and the unwrapped angle (`numpy.unwrap`), the
-    one whose steps change less is returned.
+    half a turn between two samples. The recorded or the unwrapped angle (`numpy.unwrap`) is
+    returned, whichever has the smaller changes of its steps.
     """
     steps = np.diff(angle)
     if not np.any(np.abs(steps) > 0.5 * TURN):

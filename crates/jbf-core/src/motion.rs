@@ -138,11 +138,11 @@ pub struct JournalMotion<T> {
     pub velocity_m_s: T,
     /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: T,
-    /// Acceleration at which the force is measured, m/s^2: that of the drive ahead of its spring or
-    /// gap, or of the journal ([`Rig::force_at_drive`](crate::effect::Rig::force_at_drive)).
+    /// Acceleration of the side on which the force is measured, m/s^2: that of the drive, or of the
+    /// journal ([`Rig::force_at_drive`](crate::effect::Rig::force_at_drive)).
     pub measured_acceleration_m_s2: T,
-    /// Force by which the inertia behind a spring exceeds that of the same mass moving with the
-    /// drive, N; zero unless the force is measured at the drive.
+    /// Inertial force of the part behind a spring, minus that of the same mass on the drive's side,
+    /// N; a correction of `inertia`. Zero unless the force is measured at the drive.
     pub spring_inertia_n: T,
     /// Journal angle, rad.
     pub angle_rad: T,

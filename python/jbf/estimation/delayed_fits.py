@@ -84,9 +84,8 @@ class DelayedFit:
 
     def deviance_at(self, weights: Sequence[Array]) -> float:
         """Minus twice the log likelihood of the samples with these weights, one array per run."""
-        solution = self.solution
-        residuals = solution.samples.without_deviations(solution.residuals, solution.noise)
-        return self.motion.whitening(weights).deviance(residuals)
+        samples = replace(self.solution.samples, weight=tuple(weights), motion=self.motion)
+        return samples.deviance(self.solution.residuals)
 
 
 def fits_on_clocks(

@@ -210,11 +210,11 @@ def aligned(before: Campaign, delays_s: Array, margin_s: float = 0.0) -> Campaig
 
 
 def kept_readings(before: Prepared, after: Prepared) -> slice:
-    """Readings of a run that a shift keeps; it may drop some from the start and from the end."""
+    """Slice of the readings of a run that are left after a shift, which drops some at the ends."""
     readings, kept = before.readings_n, len(after.readings_n)
     starts = range(len(readings) - kept + 1)
     found = (k for k in starts if np.array_equal(readings[k : k + kept], after.readings_n))
-    start = next(found, 0)
+    start = next(found)
     return slice(start, start + kept)
 
 

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from jbf.arrays import Array, Mask
 from jbf.estimation.errors_in_motion import ErrorsInMotion, Whitening
-from jbf.estimation.noise import Noise, innovation_cost
+from jbf.estimation.noise import WHITE, Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.random_effects import Basis, RandomEffects
 from jbf.estimation.settings import DEFAULT, Settings
@@ -174,7 +174,7 @@ class Samples:
             return self._whitening.stacked(residuals, jacobian, runs, bases)
         r, j = [], []
         for i in runs:
-            rows = [self._of_run(i, values[i], noise) for values in (residuals, jacobian)]
+            rows = [self._innovations_of(i, values[i], noise) for values in (residuals, jacobian)]
             if self.between is not None:
                 basis = self.basis(i, noise)
                 rows = [basis.whitened(values) for values in rows]
@@ -182,7 +182,13 @@ class Samples:
             j.append(rows[1])
         return np.concatenate(r), np.concatenate(j)
 
-    def _of_run(self, run: int, values: Array, noise: Noise) -> Array:
+    @property
+    def _sigma_n(self) -> float:
+        """Standard deviation of the innovations next to random effects, which are in the model."""
+        assert self.between is not None
+        return self.between.sigma_n if self.motion is None else self.motion.noise
+
+    def _innovations_of(self, run: int, values: Array, noise: Noise) -> Array:
         """Weighted innovations of values (n,) or (n, k) of a run, at the samples with a weight."""
         weight = self.weight[run]
         if self.motion is not None:
@@ -193,12 +199,12 @@ class Samples:
         return noise.innovations(weighted, self.steps_s[run])[weight > 0.0]
 
     def basis(self, run: int, noise: Noise) -> Basis:
-        """Random effects of a run, which must be known, in its innovations."""
+        """Random effects of a run in its innovations; `between` must not be None."""
         assert self.between is not None
         key = (run, None if self.motion is not None else noise)
         if key not in self._bases:
-            direction = self._of_run(run, self.between.directions[run], noise)
-            self._bases[key] = Basis.of(direction / self.between.sigma_n)
+            direction = self._innovations_of(run, self.between.directions[run], noise)
+            self._bases[key] = Basis.of(direction / self._sigma_n)
         return self._bases[key]
 
     @cached_property
@@ -227,13 +233,25 @@ class Samples:
         weighted = [r * w for r, w in zip(residuals, self.weight, strict=True)]
         return innovation_cost(noise, weighted, self.steps_s, [w > 0.0 for w in self.weight])
 
+    def deviance(self, residuals: Sequence[Array]) -> float:
+        """Minus twice the log likelihood with errors of the motion, up to an additive constant.
+
+        The noise and the scale of these errors are given, and no delay is projected out.
+        """
+        assert self.motion is not None
+        undelayed = replace(self, motion=replace(self.motion, by_delay=None))
+        r = undelayed.whitened(residuals, WHITE)
+        square = float(r @ r) / self.motion.noise**2
+        return square + self._whitening.log_determinant + self.log_determinant_between(WHITE)
+
     def without_deviations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Residuals without the predicted random effects of their runs, N, one array per run."""
         if self.between is None:
             return list(residuals)
-        sigma_n, without = self.between.sigma_n, []
+        without = []
         for i, r in enumerate(residuals):
-            sizes = self.basis(i, noise).predicted(self._of_run(i, r, noise) / sigma_n)
+            innovations = self._innovations_of(i, r, noise) / self._sigma_n
+            sizes = self.basis(i, noise).predicted(innovations)
             without.append(r - self.between.directions[i] @ sizes)
         return without
 

@@ -2,7 +2,8 @@
 
 The syntax is that of `equations`.
 Each function changes `motion` to the motion of the driven side at the end of a step, and
-`state.direction` to the direction of the friction there, a number from -1 to 1.
+`state.direction` to the direction of the friction there, a number from -1 to 1. The acceleration
+remains that of the drive, whose force contains the inertia.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     bend = drive_compliance_k * (change * dt_s)
     origin = state.driven_place - state.encoder_place
     ahead = origin
-    gain = 0.0
+    speed_change = 0.0
     direction = 0.0
     for k in range(0, count):
         share = (real(k) + 0.5) * (1.0 / steps)
@@ -48,13 +49,13 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
         elif push < -hold:
             direction = -1.0
         if direction == 0.0:
-            gain = -state.driven_speed
+            speed_change = -state.driven_speed
             state.driven_speed = 0.0
         else:
             speed = (push - hold * direction) * inverse_drag
             ahead += speed * h
             reached = speed + speed - state.driven_speed
-            gain = reached - state.driven_speed
+            speed_change = reached - state.driven_speed
             if reached * direction < 0.0:
                 state.driven_speed = 0.0
             else:
@@ -71,7 +72,7 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     state.encoder_speed = motion.velocity
     state.direction = direction
     motion.velocity = state.driven_speed
-    state.spring_inertia = drive_compliance_J * (gain / h - motion.acceleration)
+    state.spring_inertia = drive_compliance_J * (speed_change / h - motion.acceleration)
     motion.position = state.driven_place
 
 
@@ -179,9 +180,9 @@ gap_begun = False
 """States of the drive effects by name, in the order of the chain."""
 
 INERTIA_WITH_SPRING = """
-accelerating = inertia_m_e * acceleration + spring_inertia
-extra += accelerating
-transmitted += accelerating
+inertial = inertia_m_e * acceleration + spring_inertia
+extra += inertial
+transmitted += inertial
 """
 """The effect `inertia` of a drive with `drive_compliance`."""
 

@@ -102,7 +102,7 @@ def default_law_of_diagnosis(rig: Rig) -> str:
 def _describes_bearing(rig: Rig) -> bool:
     """Whether a rig is not a drive, and has a bearing or a lubricant.
 
-    `check_rig` requires both for the journal law.
+    The journal law requires both (`check_rig`), and an incomplete rig is reported as such.
     """
     the_rig(rig)
     return rig.drive is None and (rig.bearing is not None or rig.lubricant is not None)

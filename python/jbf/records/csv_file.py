@@ -94,7 +94,6 @@ def _checked_header(
     of_drive: DriveColumns | None,
 ) -> None:
     known_columns = COLUMNS if of_drive is None else of_drive.known
-    quantities = () if of_drive is None else of_drive.quantities
 
     def wrong(column: str | None, problem: str, remedy: str) -> InputError:
         return InputError(file=path, row=row, column=column, problem=problem, remedy=remedy)
@@ -124,8 +123,8 @@ def _checked_header(
                 remedy = f"did you mean {quoted(misses[name])}? rename it to {name}"
             else:
                 remedy = f"add it; the header has {listed(header)}"
-                columns = next((q for q in quantities if name in q), (name,))
-                for other, unit in in_other_units(header, columns):
+                columns = (name,) if of_drive is None else of_drive.alternatives(name)
+                for other, unit in [*in_other_units(header, columns)][:1]:
                     remedy = f"{other} is in {unit}; jbf import converts it"
                 of_drives = [heading for heading in DRIVE_COLUMNS if heading in header]
                 if of_drive is None and of_drives:

@@ -93,8 +93,15 @@ class DriveColumns:
     @property
     def quantities(self) -> tuple[tuple[str, ...], ...]:
         """Columns of each quantity that is read: friction, speed, position, and further columns."""
-        further = tuple((name,) for name in COLUMNS_OF_EVERY_DRIVE)
+        of_link = ("weight_angle_rad",) if self.drive.motion == "rotary" else ()
+        further = tuple((name,) for name in (*COLUMNS_OF_EVERY_DRIVE, *of_link))
         return tuple(q for q in map(tuple, (self.friction, self.speed, self.place)) if q) + further
+
+    def alternatives(self, name: str) -> tuple[str, ...]:
+        """Columns that can replace the required column `name`, and this column itself."""
+        motion = (*self.speed, *self.place)
+        quantities = (motion, *self.quantities)
+        return next((columns for columns in quantities if name in columns), (name,))
 
     def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
         """Return the required columns: the time, a motion and a friction.
@@ -135,7 +142,7 @@ class DriveColumns:
             if column in _TURNED and size != 1.0:
                 values = continuous(values)
             renamed[target] = values if size == 1.0 else frozen(values * size)
-            # A gear ratio of 1 may have been omitted by mistake.
+            # The default gear ratio is 1, and a missing one should be noticed.
             if size != 1.0 or column.startswith("motor_"):
                 findings.append(self._conversion(name, target, column, size, si))
             findings += [_not_read(name, target, unread_column, column) for unread_column in unread]

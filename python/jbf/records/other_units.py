@@ -9,9 +9,9 @@ from jbf.units.unit import unit_of_name
 
 
 def in_other_units(names: Iterable[str], columns: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield each name of a quantity whose known columns are `columns`, and the unit of the name.
+    """Yield name and unit of each name that has the quantity of `columns` in another unit.
 
-    A name belongs to the quantity if it consists of the stem of one of the columns and a unit that
+    A name has this quantity if it consists of the stem of one of the columns and a unit that
     can be converted to that of the column: `angle_deg` for `angle_rad`.
     """
     known = [named for column in columns if (named := unit_of_name(column))]

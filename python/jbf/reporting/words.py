@@ -161,16 +161,21 @@ def drive_sentences(diagnosis: Diagnosis) -> str:
     between = _share_between_runs(diagnosis)
     if between >= SHOWN_SHARE:
         percent = f"{100.0 * between:.0f} %"
-        sentences.append(f"About {percent} of the mean square are differences between the runs.")
+        sentences.append(
+            f"About {percent} of the mean square is due to differences between the runs."
+        )
     share = 0.0 if samples.motion is None else samples.motion.variance_share(samples.weight)
     too_large = any(r.axis in ("motion", "momentum") for r in diagnosis.residual_structure)
     if samples.motion is not None and share >= SHOWN_SHARE and not too_large:
+        # All shares are those of the whole mean square.
         share *= 1.0 - between
         if not diagnosis.residual_structure:  # the residual has no other part
             noise_share = (samples.motion.noise / diagnosis.steps[-1].rms) ** 2
             share = max(share, 1.0 - between - noise_share)
         percent = f"{100.0 * share:.0f} %"
-        sentences.append(f"About {percent} of the mean square are errors of the estimated motion.")
+        sentences.append(
+            f"About {percent} of the mean square is due to errors of the estimated motion."
+        )
     sentences += [
         f"In these runs {name} cannot be distinguished from {listed(alternatives, 'or')}."
         for name in diagnosis.machine

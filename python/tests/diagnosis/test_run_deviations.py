@@ -144,6 +144,16 @@ def _four_runs(mass_kg: float, offsets_n: tuple[float, ...]) -> list[Run]:
     return runs
 
 
+def test_offset_and_drift_are_proposed_together_if_neither_has_evidence_alone() -> None:
+    """A fast drift from the start of a run also changes its mean."""
+    rates_n_s = deviates(3.0)
+    problem, solution = fitted(lambda i, t, f: rates_n_s[i] * t)
+    found = clearest(problem, solution)
+    sizes = {f.kind: f.size for f in found.campaign.more_findings}
+    assert set(sizes) == {"level_by_run", "drift_by_run"}
+    assert sizes["drift_by_run"] == pytest.approx(3.0, rel=0.05)
+
+
 def test_effect_and_offsets_that_differ_by_run_are_identified_together() -> None:
     offsets_n = (0.5, -0.3, 0.1, -0.4)
     found = diagnose(Rig(), _four_runs(2.0, offsets_n), law="coulomb")
@@ -173,13 +183,14 @@ def test_deviation_of_a_run_is_found_next_to_errors_of_the_motion(
         a = -0.5 * rate**2 * np.sin(rate * t)
         a -= 0.5236 * rate**2 * np.sin(1.618 * rate * t + i)
         force = 3.0 * np.sign(v) + 2.0 * v + 0.6 * a
-        force += deviation * SHAPES[kind](np.zeros(len(t)), force)
+        force += deviation * SHAPES[kind](t, force)
         force += 0.06 * random.standard_normal(len(t))
         counted = quantised(x, 5e-4)
         runs.append(Run.from_arrays(t, None, force, position_m=counted, name=f"run {i}"))
     found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
     assert (found.verdict, found.effects) == ("adequate", ())
     assert found.after.samples.motion is not None
+    assert "due to differences between the runs" in " ".join(found.summary().split())
     (size,) = (f.size for f in found.findings if f.kind == kind)
     assert size == pytest.approx(np.std(deviations, ddof=1), rel=0.2)
     assert_recovered(found.fit.parameters["F_v"], 2.0, share=0.001)

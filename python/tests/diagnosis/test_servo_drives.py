@@ -279,7 +279,9 @@ def test_summary_states_the_share_of_the_errors_of_the_motion() -> None:
             jbf.Run.from_arrays(run.time_s, None, run.friction, angle_rad=run.angle_rad, name=name)
         )
     found = jbf.diagnose(jbf.Rig(drive=jbf.Drive("rotary", "torque")), runs, law="coulomb")
-    (percent,) = numbers_in(r"About (\d+) % of the mean square are errors of the", found.summary())
+    (percent,) = numbers_in(
+        r"About (\d+) % of the mean square is due to errors of the", found.summary()
+    )
     other = (0.02 / found.steps[-1].rms) ** 2
     assert percent == pytest.approx(100.0 * (1.0 - other), abs=12.0), found.summary()
 

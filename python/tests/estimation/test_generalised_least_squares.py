@@ -251,7 +251,8 @@ def test_likelihood_with_motion_errors_and_a_run_offset_is_that_of_their_sum() -
     _, filtered = samples.stacked([residual], [np.eye(n)], WHITE)
     inverse = np.linalg.inv(filtered)
     covariance = NOISE**2 * inverse @ inverse.T + offset_sd**2
-    between = RandomEffects(("zero",), (np.full((n, 1), offset_sd),), NOISE)
+    # With errors of the motion, their noise replaces that of the random effects.
+    between = RandomEffects(("zero",), (np.full((n, 1), offset_sd),), 3.0 * NOISE)
     both = replace(samples, between=between)
     square = float(residual @ np.linalg.solve(covariance, residual))
     white = both.whitened([residual], WHITE)

@@ -190,6 +190,7 @@ def test_angle_faster_than_the_speed_by_the_gear_ratio_is_reported_with_a_hint()
         ("motor_angle_rev", "angle_rad", TORQUE),
         ("position_mm", "position_m", SLIDE),
         ("temperature_K", "temperature_c", SLIDE),
+        ("weight_angle_deg", "weight_angle_rad", TORQUE),
     ],
 )
 def test_unread_column_of_a_missing_quantity_is_reported(
@@ -205,11 +206,14 @@ def test_unread_column_of_a_missing_quantity_is_reported(
     np.testing.assert_array_equal(run.extra[name], ANGLE)
 
 
-def test_missing_speed_is_reported_with_its_column_in_another_unit(tmp_path: Path) -> None:
-    columns = {"time_s": TIME_S, "speed_deg_s": SPEED, "torque_n_m": TORQUE_N_M}
+@pytest.mark.parametrize(("name", "unit"), [("speed_deg_s", "deg/s"), ("angle_deg", "deg")])
+def test_missing_motion_is_reported_with_a_column_in_another_unit(
+    name: str, unit: str, tmp_path: Path
+) -> None:
+    columns = {"time_s": TIME_S, name: SPEED, "torque_n_m": TORQUE_N_M}
     error = input_error(jbf.read_run, record(tmp_path, columns), Rig(drive=TORQUE))
     assert error.column == "velocity_rad_s"
-    assert "speed_deg_s is in deg/s" in str(error.remedy)
+    assert f"{name} is in {unit}" in str(error.remedy)
 
 
 def test_second_friction_column_is_reported_and_kept_unconverted() -> None:

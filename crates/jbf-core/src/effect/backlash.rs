@@ -83,9 +83,9 @@ described! {
         .equation("th_j constant while th_m crosses the gap, friction 0; at a flank th_j' = th_m'")
         .source("Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996")
         .limits(
-            "rigid flanks without rebound; no drag in the gap; the first motion starts at \
-             its flank; a presliding bristle keeps its force while the driven side rests; on \
-             a linear axis the gap is in m",
+            "rigid flanks without rebound; no drag in the gap, and no inertia behind it; the first \
+             motion starts at its flank; a presliding bristle keeps its force while the driven \
+             side rests; on a linear axis the gap is in m",
         )
         .needs(&[Need::NoBristle]);
     // A gap that is crossed within a few samples is found only from a start value as small.

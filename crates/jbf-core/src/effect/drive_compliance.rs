@@ -9,7 +9,8 @@
 //! friction, and the load cell then measures the torque of the spring.
 //!
 //! The force of a drive ([`Rig::force_at_drive`]) is measured ahead of the spring. With the effect
-//! `inertia`, J is the part of its mass that is behind the spring:
+//! `inertia`, J is the part of its mass that is behind the spring, and must be smaller. Without
+//! `inertia`, the force does not contain that of J. The force is
 //!
 //! ```text
 //! T = (m_e - J) theta_m'' + J theta_j'' + F(theta_j')
@@ -85,8 +86,8 @@ described! {
         .source("Cohn 1998, section 5.1; Harnoy et al. 1994")
         .limits(
             "one spring, one inertia; higher torsional modes are not included; on a linear axis \
-             k is in N/m, c in N s/m, J in kg; at a drive, J is the part of inertia.m_e behind the \
-             spring, and the position is that of the motor",
+             k is in N/m, c in N s/m, J in kg; at a drive, the position is that of the motor, and J \
+             is the part of inertia.m_e behind the spring",
         )
         .needs(&[Need::Path, Need::NoBristle]);
     k = "k", "N m/rad", "torsional stiffness between encoder and journal",
@@ -141,6 +142,8 @@ impl<T: Real> DriveCompliance<T> {
         let from = state.angle_rad - state.encoder_rad;
         let mut ahead = from;
         let mut direction = T::ZERO;
+        // Change of the speed in the last step. Where the journal stops within it, the acceleration
+        // is that before the stop.
         let mut change_rad_s = T::ZERO;
         for i in 0..steps as u32 {
             let share = (f64::from(i) + 0.5) * inverse_steps;
@@ -186,8 +189,8 @@ impl<T: Real> DriveCompliance<T> {
         let acceleration_m_s2 = change_rad_s / h * rig.radius_m;
         let (measured_acceleration_m_s2, spring_inertia_n) = if rig.force_at_drive {
             let difference_m_s2 = acceleration_m_s2 - to.acceleration_m_s2;
-            let inertia = self.inertia_kg_m2 / (arm * rig.radius_m);
-            (to.acceleration_m_s2, inertia * difference_m_s2)
+            let mass_kg = self.inertia_kg_m2 / (arm * rig.radius_m);
+            (to.acceleration_m_s2, mass_kg * difference_m_s2)
         } else {
             (acceleration_m_s2, T::ZERO)
         };

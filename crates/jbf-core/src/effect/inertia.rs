@@ -26,8 +26,8 @@ described! {
         .transmitted()
         .source("d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)")
         .limits(
-            "a rigid mass, that of the drive's side with backlash; the acceleration is derived from \
-             the recorded motion and has its noise",
+            "a rigid mass; the acceleration is derived from the recorded motion and has its noise; \
+             at a drive with backlash, the mass on the motor's side of the gap",
         );
     m_e = "m_e", "kg", "effective mass at the sliding surface",
         [0.0, 1e6], [4.0, 100.0] null(0.0);

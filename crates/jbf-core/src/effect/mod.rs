@@ -90,8 +90,8 @@ pub struct Rig<T> {
     pub radius_m: T,
     /// Number of bearings on the shaft.
     pub count: T,
-    /// Whether the recorded force is that of the drive, ahead of its spring or gap, as the current
-    /// of a motor is; otherwise it is the friction of the journal.
+    /// Whether the recorded force is that of the drive, ahead of its spring or gap, such as the
+    /// torque of a motor. Otherwise a load cell measures the friction of the journal.
     pub force_at_drive: bool,
 }
 
@@ -105,8 +105,8 @@ impl<T: Real> Default for Rig<T> {
 impl<T: Real> Rig<T> {
     /// Creates the properties of a rig from its bearing.
     ///
-    /// Without a bearing, the axis is linear and treated as a shaft of radius 1 m, and the force is
-    /// that of its drive.
+    /// Without a bearing, the axis is linear and treated as a shaft of radius 1 m. Its force counts
+    /// as that of a drive, since a sensor next to the sliding surface has no inertia of the drive.
     pub(crate) fn on(bearing: Option<&Bearing>) -> Self {
         Self {
             radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),

@@ -179,7 +179,7 @@ fn force_at_a_drive_with_a_stiff_spring_is_that_of_a_rigid_one() {
     );
     let forces = [rigid, stiff].map(|chain| readings(&chain, 1e-3, 2000, |t| swing(3.0, t)));
     for (i, (a, b)) in forces[0].iter().zip(&forces[1]).enumerate() {
-        // After a reversal, the spring needs 7 ms to twist by 2 F / k.
+        // After a reversal, the force of the spring changes from -F to F and then oscillates.
         let since_reversal_s = (3e-3 * i as f64 + 0.5 * PI) % PI / 3.0;
         let turned = since_reversal_s < 0.01;
         assert!(turned || (a - b).abs() < 0.01, "{i}: {a} {b}");

@@ -21,6 +21,7 @@ from jbf.estimation.held_out_comparison import predictive_deviance
 from jbf.estimation.noise import WHITE
 from jbf.estimation.posterior_motions import kept_readings
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 
 
@@ -46,8 +47,8 @@ def errors_of_motion(model: Model) -> Proposal | None:
     # If the delay changed, the samples of `again` differ from those of `campaign`.
     with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
     weights_before, weights_after = _common_weights((campaign, reference), (again.campaign, after))
-    gain = old.whitening(weights_before).deviance(_without_deviations(reference))
-    gain -= new.whitening(weights_after).deviance(_without_deviations(after))
+    gain = _samples(reference, old, weights_before).deviance(reference.residuals)
+    gain -= _samples(after, new, weights_after).deviance(after.residuals)
 
     @cache
     def held_out_gain() -> float:
@@ -64,16 +65,17 @@ def _held_out_deviance(
     problem: Problem, solution: Solution, motion: ErrorsInMotion, weights: Sequence[Array]
 ) -> float:
     """Minus twice the log predictive density of held-out runs, with given errors of the motion."""
-    samples = replace(solution.samples, weight=tuple(weights), motion=motion)
+    samples = _samples(solution, motion, weights)
     parts = held_out_parts(problem, solution)
     log_determinant = motion.whitening(weights).log_determinant
+    log_determinant += samples.log_determinant_between(WHITE)
     variance = motion.noise**2
     return predictive_deviance(solution, parts, samples, WHITE, variance) + log_determinant
 
 
-def _without_deviations(solution: Solution) -> list[Array]:
-    """Residuals without the random effects of their runs, N."""
-    return solution.samples.without_deviations(solution.residuals, solution.noise)
+def _samples(solution: Solution, motion: ErrorsInMotion, weights: Sequence[Array]) -> Samples:
+    """Samples of a solution with other errors of the motion and other weights."""
+    return replace(solution.samples, weight=tuple(weights), motion=motion)
 
 
 def _without_errors(solution: Solution) -> ErrorsInMotion:

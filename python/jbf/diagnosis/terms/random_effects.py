@@ -29,12 +29,11 @@ from jbf.records.findings.finding import Finding
 
 
 def random_effect(model: Model) -> Proposal | None:
-    """Propose the most significant random effect that is not yet in the model.
+    """Propose random effects, the most significant first, until their joint evidence is positive.
 
-    If it does not have enough evidence, the next one is added to the proposal: with a drift, the
-    residual is correlated, and an offset has little evidence alone. Returns None if no random
-    effect is significant, otherwise the proposal with the fewest random effects that has evidence,
-    or that with the largest evidence.
+    Usually the first one suffices. Next to a drift, however, the residual with an offset alone is
+    correlated, and neither has positive evidence alone. If the evidence is not positive, the
+    proposal with the largest one is returned; None if no random effect is significant.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     before = replace(solution, samples=campaign.samples.within(solution.samples.counted))
@@ -90,7 +89,8 @@ def _most_significant(
 ) -> tuple[RandomEffects, Finding] | None:
     """Present random effects plus the most significant additional one, with its finding, or None.
 
-    One random effect is added at a time, since random effects resemble each other.
+    Random effects resemble each other, so that the significance of the next one is tested with the
+    present ones in the model.
     """
     if len(samples.runs) < samples.settings.variance.min_runs:
         return None

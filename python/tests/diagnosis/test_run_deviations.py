@@ -1,6 +1,7 @@
 """Random effects between runs: offset, gain and drift that differ from run to run."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ from jbf.diagnosis.terms.proposal import Proposal, is_accepted
 from jbf.diagnosis.terms.random_effects import random_effect
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
+from jbf.estimation.posterior_motions import aligned
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 from known_motions import quantised
@@ -154,6 +157,22 @@ def test_offset_and_drift_are_proposed_together_if_neither_has_evidence_alone() 
     assert sizes["drift_by_run"] == pytest.approx(3.0, rel=0.05)
 
 
+@pytest.mark.parametrize("margin_s", [0.0, 0.3])
+def test_random_effects_belong_to_the_readings_that_a_shift_keeps(margin_s: float) -> None:
+    problem, _ = fitted(constant(deviates(0.1)))
+    campaign = problem.campaign
+    readings = tuple(p.readings_n[:, None] for p in campaign.prepared)
+    between = RandomEffects(("zero",), readings, NOISE_N)
+    campaign = replace(campaign, samples=replace(campaign.samples, between=between))
+    delays_s = np.array([0.1, -0.1, 0.0, 0.25, -0.25, 0.02])
+    after = aligned(campaign, delays_s, margin_s)
+    for p, before, direction in zip(
+        after.prepared, campaign.prepared, after.samples.between.directions, strict=True
+    ):
+        np.testing.assert_array_equal(direction[:, 0], p.readings_n)
+        assert margin_s == 0.0 or len(direction) < len(before.readings_n)
+
+
 def test_effect_and_offsets_that_differ_by_run_are_identified_together() -> None:
     offsets_n = (0.5, -0.3, 0.1, -0.4)
     found = diagnose(Rig(), _four_runs(2.0, offsets_n), law="coulomb")
@@ -191,6 +210,8 @@ def test_deviation_of_a_run_is_found_next_to_errors_of_the_motion(
     assert (found.verdict, found.effects) == ("adequate", ())
     assert found.after.samples.motion is not None
     assert "due to differences between the runs" in " ".join(found.summary().split())
+    # A deviation of the runs is not taken for a delay of the force.
+    assert not [f for f in found.findings if f.kind == "late_channel"]
     (size,) = (f.size for f in found.findings if f.kind == kind)
     assert size == pytest.approx(np.std(deviations, ddof=1), rel=0.2)
     assert_recovered(found.fit.parameters["F_v"], 2.0, share=0.001)

@@ -201,15 +201,15 @@ class Samples:
     def basis(self, run: int, noise: Noise) -> Basis:
         """Random effects of a run in its innovations; `between` must not be None."""
         assert self.between is not None
-        key = (run, None if self.motion is not None else noise)
-        if key not in self._bases:
+        known = self._bases.get(run)
+        if known is None or (self.motion is None and known[0] != noise):
             direction = self._innovations_of(run, self.between.directions[run], noise)
-            self._bases[key] = Basis.of(direction / self._sigma_n)
-        return self._bases[key]
+            known = self._bases[run] = noise, Basis.of(direction / self._sigma_n)
+        return known[1]
 
     @cached_property
-    def _bases(self) -> dict[tuple[int, Noise | None], Basis]:
-        """Random effects of runs in the innovations of a noise model, as far as they are known."""
+    def _bases(self) -> dict[int, tuple[Noise, Basis]]:
+        """Last noise model of each run, and the random effects in its innovations (`basis`)."""
         return {}
 
     def log_determinant_between(self, noise: Noise) -> float:

@@ -133,7 +133,7 @@ class Whitening:
 
         The arguments are residuals (n,) and their derivatives (n, k), one array per run, in the
         unit of the force, and optionally the indices of the runs to use and the random effects of
-        all runs. The result has the residuals (m,) and the Jacobian (m, k) of the samples with a
+        these. The result has the residuals (m,) and the Jacobian (m, k) of the samples with a
         weight, all runs in one array.
         """
         runs = list(range(len(residuals)) if selection is None else selection)
@@ -145,7 +145,7 @@ class Whitening:
             columns.append(np.column_stack(parts))
         blocks = self.whitened(columns, runs)
         if bases is not None:
-            blocks = [bases[i].whitened(block) for i, block in zip(runs, blocks, strict=True)]
+            blocks = [basis.whitened(block) for basis, block in zip(bases, blocks, strict=True)]
         stacked = np.concatenate(blocks)
         if self.by_delay is not None:
             delay = stacked[:, -1]

@@ -210,11 +210,17 @@ def aligned(before: Campaign, delays_s: Array, margin_s: float = 0.0) -> Campaig
 
 
 def kept_readings(before: Prepared, after: Prepared) -> slice:
-    """Slice of the readings of a run that are left after a shift, which drops some at the ends."""
+    """Slice of the readings of a run that a shift keeps; it drops some at the start or the end.
+
+    The readings are compared, and may contain NaN.
+    """
     readings, kept = before.readings_n, len(after.readings_n)
-    starts = range(len(readings) - kept + 1)
-    found = (k for k in starts if np.array_equal(readings[k : k + kept], after.readings_n))
-    start = next(found)
+    starts = (
+        k
+        for k in range(len(readings) - kept + 1)
+        if np.array_equal(readings[k : k + kept], after.readings_n, equal_nan=True)
+    )
+    start = next(starts, 0)
     return slice(start, start + kept)
 
 

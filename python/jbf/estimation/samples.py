@@ -168,9 +168,7 @@ class Samples:
         """
         runs = list(range(len(residuals)) if selection is None else selection)
         if self.motion is not None:
-            bases = None
-            if self.between is not None:
-                bases = [self.basis(i, noise) for i in range(len(self.runs))]
+            bases = None if self.between is None else [self.basis(i, noise) for i in runs]
             return self._whitening.stacked(residuals, jacobian, runs, bases)
         r, j = [], []
         for i in runs:

@@ -161,6 +161,10 @@ def test_offset_and_drift_are_proposed_together_if_neither_has_evidence_alone() 
 def test_random_effects_belong_to_the_readings_that_a_shift_keeps(margin_s: float) -> None:
     problem, _ = fitted(constant(deviates(0.1)))
     campaign = problem.campaign
+    first, *others = campaign.prepared
+    missing = np.where(np.arange(len(first.run)) == 100, np.nan, first.readings_n)
+    first = replace(first, run=replace(first.run, friction=missing))
+    campaign = replace(campaign, prepared=(first, *others))
     readings = tuple(p.readings_n[:, None] for p in campaign.prepared)
     between = RandomEffects(("zero",), readings, NOISE_N)
     campaign = replace(campaign, samples=replace(campaign.samples, between=between))

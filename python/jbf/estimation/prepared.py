@@ -248,19 +248,25 @@ class Prepared:
     def core(self) -> Driven:
         """Motion of the run as an input of the compiled core.
 
-        If the force was read less often than the motion, the input also contains the motion between
-        the force readings, because the times of starts and reversals matter.
+        The input contains the motion before the first force reading, on which the state of the
+        friction there depends. If the force was read less often than the motion, it also contains
+        the motion between the readings, because the times of starts and reversals matter.
         """
         time = self.run.time_s
         if self.recorded is None:
             return driven_motion(self.rig, self.run, self.motion)
-        instants, motion = self.recorded
-        if self.step_s < FINER * float(np.median(np.diff(instants))):
+        instants, recorded = self.recorded
+        is_finer = self.step_s >= FINER * float(np.median(np.diff(instants)))
+        further = (instants < (time[-1] if is_finer else time[0])) & ~np.isin(instants, time)
+        if not np.any(further):
             return driven_motion(self.rig, self.run, self.motion)
-        inside = (instants > time[0]) & (instants < time[-1])
-        joint = np.union1d(instants[inside], time)
+        both = np.concatenate([time, instants])
+        used = np.concatenate([np.ones(len(time), dtype=bool), further])
+        order = np.argsort(both, kind="stable")
+        order = order[used[order]]
+        joint = both[order]
         run = self.run.at(joint, np.interp(joint, time, self.friction))
-        driven = driven_motion(self.rig, run, motion.at(instants, joint))
+        driven = driven_motion(self.rig, run, _joined(self.motion, recorded, order))
         kept = np.searchsorted(joint, time)
         return Driven(driven.motion, kept if driven.kept is None else driven.kept[kept])
 
@@ -270,6 +276,19 @@ class Prepared:
         That object is created again at the first access after unpickling.
         """
         return {name: value for name, value in vars(self).items() if name != "core"}
+
+
+def _joined(motion: EstimatedMotion, other: EstimatedMotion, order: Array) -> EstimatedMotion:
+    """Return the samples of two motions in a common order, without their joint errors.
+
+    `order` has indices into the samples of the first motion followed by those of the second one.
+    """
+    kinematic = ("velocity", "acceleration", "angle_rad", "velocity_error_m_s")
+    samples: dict[str, Any] = {
+        name: np.concatenate([getattr(motion, name), getattr(other, name)])[order]
+        for name in (*kinematic, "resting", "sign_known")
+    }
+    return replace(motion, errors=None, **samples)
 
 
 def _independent(motion: EstimatedMotion, spacing: float) -> Mask:

@@ -12,6 +12,7 @@ from by_hand import Array, coulomb
 from jbf import InputError, Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
 from jbf.estimation.quantisation import bias_rms, noise_before_converter
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
@@ -232,13 +233,31 @@ def test_shift_compares_the_force_with_the_motion_at_the_shifted_instants(
 
 
 @pytest.mark.parametrize(("times", "finer"), [(1.45, False), (1.6, True)])
-def test_core_uses_the_recorded_motion_if_sampled_1_5_times_as_often_as_the_force(
+def test_core_uses_the_recorded_motion_before_the_force_and_finer_motion_within_it(
     ready: Prepared, times: float, finer: bool
 ) -> None:
+    """The motion within the force record is used if sampled 1.5 times as often as the force."""
     instants = INSTANTS[0] - 0.25 + STEP_S / times * np.arange(int(460 * times))
     fine = Run.from_arrays(instants, speed(instants), np.ones(len(instants)))
     core = replace(ready, recorded=(instants, Prepared.of(Rig(), fine).motion)).core
-    assert (core.kept is not None) == finer
-    if core.kept is not None:
-        inside = instants[(instants > INSTANTS[0]) & (instants < INSTANTS[-1])]
-        np.testing.assert_array_equal(np.union1d(inside, INSTANTS)[core.kept], INSTANTS)
+    assert core.kept is not None
+    end_s = INSTANTS[-1] if finer else INSTANTS[0]
+    expected = np.union1d(instants[instants < end_s], INSTANTS)
+    np.testing.assert_array_equal(expected[core.kept], INSTANTS)
+
+
+@pytest.mark.parametrize("times", [1.45, 1.6])
+def test_prediction_at_a_reading_depends_on_the_motion_at_this_reading(
+    ready: Prepared, times: float
+) -> None:
+    """Also if the motion was recorded at other instants than the force."""
+    instants = INSTANTS[0] - 0.25 + STEP_S / times * np.arange(int(460 * times))
+    fine = Run.from_arrays(instants, speed(instants), np.ones(len(instants)))
+    before = replace(ready, recorded=(instants, Prepared.of(Rig(), fine).motion))
+    faster = replace(before.motion, velocity=1.01 * before.motion.velocity)
+    problem = Problem(Campaign.prepare(Rig(), [ready.run]), "coulomb", "journal", ())
+    values = problem.starts({"F_c": 1e-6, "F_s": 1e-6, "F_v": 20.0})[0]
+    cores = [before.core, replace(before, motion=faster).core]
+    forces = problem.chain.predict(values, cores)
+    moving = before.motion.slides
+    np.testing.assert_allclose(forces[1][moving], 1.01 * forces[0][moving], atol=1e-7)

@@ -173,6 +173,23 @@ def test_excluded_start_keeps_its_time_in_the_motion_if_the_force_is_shifted() -
     assert min(ends[0]) > 0.2
 
 
+def test_film_after_dropped_readings_depends_on_the_motion_before_them() -> None:
+    """The film of a shaft that starts from rest depends on the whole motion since the start."""
+    problem, values = journal_problem(journal_run("from rest", 0.0))
+    (before,) = problem.campaign.prepared
+    after_drop = before.shifted(0.0, 0.0, margin_s=0.5)
+    dropped = len(before.readings_n) - len(after_drop.readings_n)
+    assert dropped == pytest.approx(2 * 0.5 / before.step_s, abs=2)
+    (expected,) = problem.chain.predict(values, [before.core])
+    (found,) = problem.chain.predict(values, [after_drop.core])
+    start = np.searchsorted(before.run.time_s, after_drop.run.time_s[0])
+    np.testing.assert_allclose(found, expected[start : start + len(found)], rtol=1e-9)
+    memoryless = problem.chain.predict(
+        values, [core_motion(before.rig, after_drop.run, after_drop.motion)]
+    )[0]
+    assert np.max(np.abs(memoryless - found)) > 0.1 * np.max(np.abs(found))
+
+
 def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
     runs.append(after(journal_run("c", 30.0), FAST, 2))

@@ -110,9 +110,10 @@ class ConditionSettings:
         "changes an oil's viscosity by a tenth; a thermometer is not at the contact",
     )
     min_pitch_periods: float = documented(
-        2.0,
-        "minimum number of periods within the travel for a wave to have a pitch",
-        "a longer wave is a variation along the stroke, which is another effect",
+        2.0, "minimum number of periods of a wave within the travel", "a longer one is a variation"
+    )
+    max_time_ratio: float = documented(
+        3.0, "longest time constant, in durations of the longest run", "4 % from a linear trend"
     )
 
 
@@ -298,7 +299,7 @@ class MotionSettings:
     )
     min_share: float = documented(
         0.01,
-        "share of the motion's errors in the mean variance below which they are neglected",
+        "share of the motion's errors in the variance below which they are neglected",
         "changes standard errors by half a per cent",
     )
     min_delay_share: float = documented(
@@ -343,9 +344,7 @@ class MotionSettings:
         3, "local minima of the sum of squares at which this delay is fitted", "convention"
     )
     max_clock_deviance: float = documented(
-        9.0,
-        "difference of the deviance up to which the clock of the force is not identifiable",
-        "three standard deviations",
+        9.0, "least difference of the deviance that identifies the force's clock", "three sigma"
     )
     min_smoothness_gain: float = documented(
         10.0,

@@ -225,8 +225,8 @@ def _limited(page: Parameter, campaign: Campaign, in_newtons: bool) -> Parameter
     A film with a transition speed of several times the highest recorded speed has no influence on
     the record, and its equations are stiff. The travel must contain several periods of a pitch. The
     hysteresis of a load cell is limited by `MAX_CELL_HYSTERESIS`. A delay is limited to a fraction
-    of the shortest run, and any other time to the longest run, since slower processes are not
-    identifiable.
+    of the shortest run, and any other time to a multiple of the longest run: a slower process
+    cannot be distinguished from a trend.
     """
     limit = np.inf
     if page.bound == "transition_speed":
@@ -238,9 +238,10 @@ def _limited(page: Parameter, campaign: Campaign, in_newtons: bool) -> Parameter
         largest_n = _largest_n(campaign)
         limit = max(MAX_CELL_HYSTERESIS * largest_n, page.lower + 1e-6 * largest_n)
     elif page.unit == "s":
-        durations = [p.run.duration_s for p in campaign.prepared]
-        share = campaign.settings.delays.max_run_share
-        limit = share * min(durations) if page.start == "lateness" else max(durations)
+        durations_s, settings = [p.run.duration_s for p in campaign.prepared], campaign.settings
+        is_delay = page.start == "lateness"
+        shortest_s = settings.delays.max_run_share * min(durations_s)
+        limit = shortest_s if is_delay else settings.conditions.max_time_ratio * max(durations_s)
         limit = limit if limit > page.lower else np.inf
     return replace(page, upper=min(page.upper, limit))
 

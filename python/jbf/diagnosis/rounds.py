@@ -15,7 +15,7 @@ from jbf.diagnosis.ledger import SEARCH, Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.remainders import remainder_of, remainders_of_selection
 from jbf.diagnosis.review import reconsider, start_model, still_needed
 from jbf.diagnosis.selection import Follow, Round, try_candidates
-from jbf.diagnosis.terms import Update, best_term_update, re_estimated_motion
+from jbf.diagnosis.terms import Leader, Update, best_term_update, re_estimated_motion
 from jbf.errors import Unfinished
 from jbf.estimation.held_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
@@ -184,8 +184,8 @@ class _Selection:
         leader, candidates = trial_round.leader, self.candidates
         if leader is None:
             return False
-        least = _evidence_of_leader(candidates, self.present, trial_round)
-        update = best_term_update(candidates, self.present, least) if self._may_update else None
+        accepted = Leader(leader, _evidence_of_leader(candidates, self.present, trial_round))
+        update = best_term_update(candidates, self.present, accepted) if self._may_update else None
         if update is not None and self._update_terms(update, add_more=False):
             return True
         if len(self.present) >= candidates.policy.selection.max_effects:

@@ -9,7 +9,7 @@ from by_hand import Array
 from jbf import Rig
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import select
-from jbf.diagnosis.terms import TERMS, best_term_update
+from jbf.diagnosis.terms import TERMS, Leader, best_term_update
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_run
 from jbf.diagnosis.terms.proposal import Model, Proposal, is_accepted, price_of_term
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
@@ -149,17 +149,34 @@ def test_random_effect_is_added_only_if_it_has_more_evidence_than_the_leading_ef
     )
     fit = candidates.fitted(()).problem, candidates.converge(())
     evidence = proposed(random_effect(model_of(*fit))).evidence
-    assert best_term_update(candidates, (), 1.01 * evidence) is None
-    update = best_term_update(candidates, (), 0.99 * evidence)
+    assert best_term_update(candidates, (), Leader("viscous_asymmetry", 1.01 * evidence)) is None
+    update = best_term_update(candidates, (), Leader("viscous_asymmetry", 0.99 * evidence))
     assert update is not None
     assert [f.kind for f in update[0].more_findings] == ["level_by_run"]
+
+
+@pytest.mark.parametrize(("shift", "kinds"), [(0, []), (1, ["gain_by_run"])])
+def test_random_effect_is_not_added_if_the_load_predicts_the_gain_of_other_runs(
+    shift: int, kinds: list[str]
+) -> None:
+    """The friction of a run is proportional to its load, or to that of the run before."""
+    gains = np.array([0.7, 0.8, 1.3, 1.2, 0.6, 0.75, 1.35, 1.25])
+    loads_n = 100.0 * np.roll(gains, shift)
+    records = reversing_runs(
+        lambda i, t, f, random: gains[i] * f + white(i, len(t), random), runs=8
+    )
+    records = [replace(run, load_n=np.full(len(run), loads_n[i])) for i, run in enumerate(records)]
+    leader = Leader("dry_load_dependence", 1.0)
+    update = best_term_update(coulomb_candidates(records), (), leader)
+    found = [] if update is None else update.campaign.more_findings
+    assert [finding.kind for finding in found] == kinds
 
 
 def test_variance_by_run_does_not_compete_with_an_effect() -> None:
     candidates = coulomb_candidates(
         reversing_runs(lambda i, t, f, random: f + (1.0 + i) * white(i, len(t), random))
     )
-    assert best_term_update(candidates, (), 0.0) is None
+    assert best_term_update(candidates, (), Leader("viscous_asymmetry", 0.0)) is None
     update = best_term_update(candidates, ())
     assert update is not None
     assert [f.kind for f in update[0].more_findings] == ["noise_by_run"]

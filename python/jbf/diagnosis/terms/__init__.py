@@ -2,8 +2,8 @@
 
 Each module estimates one kind of term for a given model and returns it as a `Proposal`, whose
 evidence is comparable with that of an effect. The selection (`jbf.diagnosis.rounds`) adds the term
-with the largest evidence if no effect is accepted; some terms (`COMPETING`) also compete with the
-effects.
+with the largest evidence if no effect is accepted; errors of the motion and random effects also
+compete with the effects.
 
 | module | terms |
 | --- | --- |
@@ -36,12 +36,6 @@ from jbf.estimation.posterior_motions import corrected_delay_s
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import DELAY
 
-COMPETING: tuple[Term, ...] = (errors_of_motion, random_effect)
-"""Terms that compete with the effects.
-
-Effects that filter a force or a motion can explain errors of the motion. An effect of a quantity
-that differs between runs resembles a random effect.
-"""
 TERMS: tuple[Term, ...] = (
     errors_of_motion,
     random_effect,
@@ -54,8 +48,16 @@ TERMS: tuple[Term, ...] = (
 """All terms, in order of preference at equal evidence.
 
 The error of a model with a missing effect resembles most of them. They are therefore estimated only
-if no effect is accepted.
+if no effect is accepted. Errors of the motion compete with an accepted effect, since effects that
+filter a force or a motion can explain these errors, and so do random effects.
 """
+
+
+class Leader(NamedTuple):
+    """Accepted effect, which is not yet a part of the model, and its evidence."""
+
+    effect: str
+    evidence: float
 
 
 class Update(NamedTuple):
@@ -77,33 +79,53 @@ class Update(NamedTuple):
 
 
 def best_term_update(
-    candidates: Candidates, present: Names, min_evidence: float | None = None
+    candidates: Candidates, present: Names, leader: Leader | None = None
 ) -> Update | None:
     """Add the term of the observation model with the largest evidence, or remove a random effect.
 
-    `min_evidence` is the evidence of an accepted effect: only the terms `COMPETING` are tried, and
-    an effect in place of a delay of more than a sampling interval; each must have more evidence.
+    With a leader, only errors of the motion and random effects are tried, and an effect in place of
+    a delay of more than a sampling interval. Each must have more evidence than the leader.
 
-    If `min_evidence` is None, all terms are tried, a random effect that is no longer significant is
-    removed, and an effect may replace errors of the motion. None if no term changes.
+    Without a leader, all terms are tried, a random effect that is no longer significant is removed,
+    and an effect may replace errors of the motion. None if no term changes.
     """
     full = _model(candidates, present, present)
-    terms = TERMS if min_evidence is None else COMPETING
     estimates = [(_errors_of_motion(candidates, present), full)]
-    estimates += [(term(full), full) for term in terms if term is not errors_of_motion]
+    if leader is None:
+        estimates += [(term(full), full) for term in TERMS if term is not errors_of_motion]
+    else:
+        estimates.append((_random_effect_before(candidates, present, leader), full))
     explained = explained_by_delays(present)
-    if explained and min_evidence is None:
+    if explained and leader is None:
         reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
         estimates.append((delays(reduced), reduced))
-    if min_evidence is None or _delay_in_steps(candidates.campaign) > 1.0:
+    if leader is None or _delay_in_steps(candidates.campaign) > 1.0:
         estimates.append((_effect_instead_of_errors(candidates, present), full))
     proposals = [(p, model) for p, model in estimates if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
-        if is_accepted(proposal, model, min_evidence or 0.0):
+        if is_accepted(proposal, model, 0.0 if leader is None else leader.evidence):
             return Update(proposal.campaign, proposal.problem.effects, proposal.solution)
-    fewer = without_random_effect(full) if min_evidence is None else None
+    fewer = without_random_effect(full) if leader is None else None
     return None if fewer is None else Update(fewer, present, None)
+
+
+def _random_effect_before(
+    candidates: Candidates, present: Names, leader: Leader
+) -> Proposal | None:
+    """Propose a random effect that has more evidence than the leader.
+
+    None if held-out runs confirm the leader, since a random effect of a run cannot be predicted
+    from other runs: the leader explains why the runs differ, or another part of the error.
+    """
+    proposal = random_effect(_model(candidates, present, present))
+    if proposal is None or proposal.evidence <= leader.evidence:
+        return None
+    campaign = candidates.campaign
+    if len(campaign.prepared) < campaign.settings.held_out.min_units:
+        return proposal
+    confirmed = candidates.confirmation(present, leader.effect).units_confirm(candidates.level)
+    return None if confirmed else proposal
 
 
 def re_estimated_motion(candidates: Candidates, present: Names) -> Update | None:

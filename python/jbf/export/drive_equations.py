@@ -17,6 +17,15 @@ def drive_compliance_at(before: real, now: real, share: real) -> real:
     return max(now + (now - before) * share, 0.0)
 
 
+def drive_compliance_direction(speed: real, pull: real, hold: real) -> real:
+    """Direction of the friction; at rest that of the force `pull`, zero if it sticks."""
+    if not speed == 0.0:
+        return sign(speed)
+    if abs(pull) > hold:
+        return sign(pull)
+    return 0.0
+
+
 def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     """Spring and damper between the encoder and the inertia of the driven side."""
     whole = min(dt_s / state.spring_step_s, 1.0)
@@ -37,42 +46,48 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     bend = drive_compliance_k * (change * dt_s)
     origin = state.driven_place - state.encoder_place
     ahead = origin
-    speed_change = 0.0
     direction = 0.0
     for k in range(0, count):
         share = (real(k) + 0.5) * (1.0 / steps)
         pushed = first + linear * share - bend * (0.5 * share * (1.0 - share))
-        push = inertia * state.driven_speed - drive_compliance_k * ahead + pushed
-        direction = 0.0
-        if push > hold:
-            direction = 1.0
-        elif push < -hold:
-            direction = -1.0
-        if direction == 0.0:
-            speed_change = -state.driven_speed
-            state.driven_speed = 0.0
-        else:
-            speed = (push - hold * direction) * inverse_drag
+        pull = pushed - drive_compliance_k * ahead
+        before = state.driven_speed
+        direction = drive_compliance_direction(before, pull, hold)
+        speed = (inertia * before + pull - hold * direction) * inverse_drag
+        after = speed + speed - before
+        if not direction == 0.0 and after * direction >= 0.0:
             ahead += speed * h
-            reached = speed + speed - state.driven_speed
-            speed_change = reached - state.driven_speed
-            if reached * direction < 0.0:
-                state.driven_speed = 0.0
-            else:
-                state.driven_speed = reached
+            state.driven_speed = after
+        elif not direction == 0.0:
+            stopping = before / (before - after)
+            remaining = h - stopping * h
+            ahead += before * (stopping * h * 0.5)
+            state.driven_speed = 0.0
+            direction = drive_compliance_direction(0.0, pull, hold)
+            if not direction == 0.0 and remaining > 0.0:
+                drag = drive_compliance_J * 2.0 / remaining
+                drag = drag + drive_compliance_k * (remaining * 0.5) + drive_compliance_c + slope
+                speed = (pull - hold * direction) / drag
+                ahead += speed * remaining
+                state.driven_speed = speed + speed
     if not ahead == origin:
         state.driven_place = state.encoder_place + ahead
+    torque = (drive_compliance_k * (motion.position - state.driven_place)
+              + drive_compliance_c * (motion.velocity - state.driven_speed))
+    level = drive_compliance_at(state.spring_level0, state.spring_level1, whole)
+    slope = drive_compliance_at(state.spring_slope0, state.spring_slope1, whole)
     if direction == 0.0:
-        torque = (drive_compliance_k * (motion.position - state.driven_place)
-                  + drive_compliance_c * motion.velocity)
-        level = drive_compliance_at(state.spring_level0, state.spring_level1, whole)
+        friction = min(max(torque, -level), level)
         if level > 0.0:
-            direction = min(max(torque / level, -1.0), 1.0)
+            direction = friction / level
+    else:
+        friction = level * direction + slope * state.driven_speed
+    driven = (torque - friction) / drive_compliance_J
     state.encoder_place = motion.position
     state.encoder_speed = motion.velocity
     state.direction = direction
     motion.velocity = state.driven_speed
-    state.spring_inertia = drive_compliance_J * (speed_change / h - motion.acceleration)
+    state.spring_inertia = drive_compliance_J * (driven - motion.acceleration)
     motion.position = state.driven_place
 
 

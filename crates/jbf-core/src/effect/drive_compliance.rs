@@ -20,7 +20,8 @@
 //!
 //! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994). The
 //! integration method is the midpoint rule with an implicit solution for the set-valued force (a
-//! proximal step, after Moreau), which allows sticking without chattering.
+//! proximal step, after Moreau), which allows sticking without chattering. A step in which the
+//! journal stops is divided there.
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Resistance, Rig, Stage};
@@ -98,6 +99,19 @@ described! {
         [1e-6, 1e2], [2e-3] .log();
 }
 
+/// Direction of the friction of a journal with this speed; at rest that of the force `pull`, zero if
+/// the sliding friction `hold` exceeds it.
+#[inline(always)]
+fn direction_from<T: Real>(speed: T, pull: T, hold: T) -> T {
+    if speed != T::ZERO {
+        speed.sign()
+    } else if pull.abs() > hold {
+        pull.sign()
+    } else {
+        T::ZERO
+    }
+}
+
 impl<T: Real> DriveCompliance<T> {
     fn with_parameters(p: Parameters<T>) -> Self {
         let (k, j) = (p.k.value(), p.j.value());
@@ -142,51 +156,59 @@ impl<T: Real> DriveCompliance<T> {
         let from = state.angle_rad - state.encoder_rad;
         let mut ahead = from;
         let mut direction = T::ZERO;
-        // Change of the speed in the last step. Where the journal stops within it, the acceleration
-        // is that before the stop.
-        let mut change_rad_s = T::ZERO;
         for i in 0..steps as u32 {
             let share = (f64::from(i) + 0.5) * inverse_steps;
             let pushed = first + line.times(share) - bend.times(sag(share));
-            let push = inertia * state.speed_rad_s - k * ahead + pushed;
-            let held = if push > hold {
-                direction = T::ONE;
-                hold
-            } else if push < -hold {
-                direction = -T::ONE;
-                -hold
-            } else {
-                direction = T::ZERO;
-                change_rad_s = -state.speed_rad_s;
-                state.speed_rad_s = T::ZERO;
+            let pull = pushed - k * ahead;
+            let before = state.speed_rad_s;
+            direction = direction_from(before, pull, hold);
+            if direction == T::ZERO {
                 continue;
-            };
-            let speed = (push - held) * inverse_drag;
-            ahead += speed * h;
-            let after = speed + speed - state.speed_rad_s;
-            change_rad_s = after - state.speed_rad_s;
-            // A midpoint step must not carry the journal through rest: it stops there first.
-            state.speed_rad_s = if after.value() * direction.value() < 0.0 {
-                T::ZERO
-            } else {
-                after
-            };
+            }
+            let speed = (inertia * before + pull - hold * direction) * inverse_drag;
+            let after = speed + speed - before;
+            if after.value() * direction.value() >= 0.0 {
+                ahead += speed * h;
+                state.speed_rad_s = after;
+                continue;
+            }
+            // The journal stops within the step. For the remaining time it moves on from rest, or
+            // sticks.
+            let stopping = before / (before - after);
+            let remaining = h - stopping * h;
+            ahead += before * (stopping * h).times(0.5);
+            state.speed_rad_s = T::ZERO;
+            direction = direction_from(T::ZERO, pull, hold);
+            if direction != T::ZERO && remaining > T::ZERO {
+                let drag = self.inertia_kg_m2.times(2.0) / remaining;
+                let drag = drag + k * remaining.times(0.5) + c + slope;
+                let speed = (pull - hold * direction) / drag;
+                ahead += speed * remaining;
+                state.speed_rad_s = speed + speed;
+            }
         }
         // A stuck journal keeps its position exactly.
         if ahead != from {
             state.angle_rad = state.encoder_rad + ahead;
         }
-        if direction == T::ZERO {
-            // Stuck: the friction equals the force that holds the journal.
-            let torque =
-                k * (to.angle_rad - state.angle_rad) + c * (to.velocity_m_s * inverse_radius);
-            let hold = arm * end.level_n;
+        let slip_rad_s = to.velocity_m_s * inverse_radius - state.speed_rad_s;
+        let torque = k * (to.angle_rad - state.angle_rad) + c * slip_rad_s;
+        let hold = arm * end.level_n;
+        let friction = if direction == T::ZERO {
+            // Stuck: the friction equals the torque that holds the journal, if it suffices.
+            let held = torque.max(-hold).min(hold);
             if hold > T::ZERO {
-                direction = (torque / hold).max(-T::ONE).min(T::ONE);
+                direction = held / hold;
             }
-        }
+            held
+        } else {
+            let slope = arm * rig.radius_m * end.slope_n_s_m;
+            hold * direction + slope * state.speed_rad_s
+        };
+        // By the equation of motion at the end of the step. The change of the speed would be the
+        // acceleration in its middle.
+        let acceleration_m_s2 = (torque - friction) / self.inertia_kg_m2 * rig.radius_m;
         (state.encoder_rad, state.encoder_m_s) = (to.angle_rad, to.velocity_m_s);
-        let acceleration_m_s2 = change_rad_s / h * rig.radius_m;
         let (measured_acceleration_m_s2, spring_inertia_n) = if rig.force_at_drive {
             let difference_m_s2 = acceleration_m_s2 - to.acceleration_m_s2;
             let mass_kg = self.inertia_kg_m2 / (arm * rig.radius_m);

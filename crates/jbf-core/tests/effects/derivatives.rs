@@ -2,8 +2,8 @@
 //! journal law and of every effect.
 //!
 //! A central difference of step h has the error h^2 F'''/6 and the rounding error divided by h.
-//! With h = 5e-5 of the parameter the first is 2.5e-9 of the slope times a factor of curvature, for
-//! which 4e2 is allowed. The second is the rounding of a thousand steps, 1e-12 of the force,
+//! With h = 2e-5 of the parameter the first is 4e-10 of the slope times a factor of curvature, for
+//! which 2e3 is allowed. The second is the rounding of a thousand steps, 1e-12 of the force,
 //! divided by h.
 
 use crate::common::motion::Sines;
@@ -147,7 +147,7 @@ fn derivatives_of_every_effect_match_differences() {
                 Sines::two_way(1.0).resting(3.0, 1.0),
             ] {
                 for i in 0..p.len() {
-                    let h = 5e-5 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
+                    let h = 2e-5 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
                     let by = |steps: f64| moved(info, &p, i, steps * h, &sines);
                     let at = by(0.0);
                     let (above, below) = (by(1.0), by(-1.0));

@@ -34,7 +34,8 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     slope = drive_compliance_at(state.spring_slope0, state.spring_slope1, half)
     longest = {_core.DRIVE_COMPLIANCE_LONGEST_INNER_STEP!r} * sqrt(
         drive_compliance_J / drive_compliance_k)
-    steps = min(max(ceil(dt_s / longest), 1.0), {_core.DRIVE_COMPLIANCE_MOST_INNER_STEPS!r})
+    needed = ceil(dt_s / longest)
+    steps = min(max(needed, 1.0), {_core.DRIVE_COMPLIANCE_MOST_INNER_STEPS!r})
     count: int = int(steps)
     h = dt_s * (1.0 / steps)
     inertia = drive_compliance_J * 2.0 / h
@@ -46,6 +47,7 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     bend = drive_compliance_k * (change * dt_s)
     origin = state.driven_place - state.encoder_place
     ahead = origin
+    speed_change = 0.0
     direction = 0.0
     for k in range(0, count):
         share = (real(k) + 0.5) * (1.0 / steps)
@@ -55,21 +57,29 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
         direction = drive_compliance_direction(before, pull, hold)
         speed = (inertia * before + pull - hold * direction) * inverse_drag
         after = speed + speed - before
+        speed_change = 0.0
         if not direction == 0.0 and after * direction >= 0.0:
             ahead += speed * h
+            speed_change = after - before
             state.driven_speed = after
         elif not direction == 0.0:
-            stopping = before / (before - after)
-            remaining = h - stopping * h
-            ahead += before * (stopping * h * 0.5)
+            speed_change = -before
             state.driven_speed = 0.0
-            direction = drive_compliance_direction(0.0, pull, hold)
-            if not direction == 0.0 and remaining > 0.0:
-                drag = drive_compliance_J * 2.0 / remaining
-                drag = drag + drive_compliance_k * (remaining * 0.5) + drive_compliance_c + slope
-                speed = (pull - hold * direction) / drag
-                ahead += speed * remaining
-                state.driven_speed = speed + speed
+            if needed > steps or drive_compliance_c * h > drive_compliance_J:
+                if speed * direction > 0.0:
+                    ahead += speed * h
+            else:
+                stopping = before / (before - after)
+                remaining = h - stopping * h
+                ahead += before * (stopping * h * 0.5)
+                direction = drive_compliance_direction(0.0, pull, hold)
+                if not direction == 0.0 and remaining > 0.0:
+                    drag = drive_compliance_J * 2.0 / remaining
+                    drag = (drag + drive_compliance_k * (remaining * 0.5) + drive_compliance_c
+                            + slope)
+                    speed = (pull - hold * direction) / drag
+                    ahead += speed * remaining
+                    state.driven_speed = speed + speed
     if not ahead == origin:
         state.driven_place = state.encoder_place + ahead
     torque = (drive_compliance_k * (motion.position - state.driven_place)
@@ -83,6 +93,8 @@ def drive_compliance_step(state: Out[State], motion: Out[Motion], dt_s: real):
     else:
         friction = level * direction + slope * state.driven_speed
     driven = (torque - friction) / drive_compliance_J
+    if needed > steps or drive_compliance_c * h > drive_compliance_J:
+        driven = speed_change / h
     state.encoder_place = motion.position
     state.encoder_speed = motion.velocity
     state.direction = direction

@@ -70,6 +70,25 @@ def test_force_of_a_belt_drive_is_that_of_two_masses(every: int, largest_rms_n: 
     assert abs(delay_s) < 1e-4
 
 
+@pytest.mark.parametrize("stiffness", [0.1, 10.0, 1e3, 1e5, 1e7])
+@pytest.mark.parametrize("damping", [1e-5, 1e-2, 1.0, 1e3])
+@pytest.mark.parametrize("inertia", [1e-6, 1e-4, 1e-2, 1.0])
+def test_force_is_bounded_where_the_steps_do_not_resolve_the_oscillation(
+    stiffness: float, damping: float, inertia: float
+) -> None:
+    """The thesis's bearing with a friction below 30 N, at samples of 20 ms."""
+    time_s = np.arange(0.0, 6.0, 0.02)
+    angle = 4.0 * np.sin(2.0 * time_s)
+    run = Run.from_arrays(time_s, 0.0127 * 8.0 * np.cos(2.0 * time_s), None, angle_rad=angle)
+    values = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
+    values |= {"drive_compliance.k": stiffness, "drive_compliance.c": damping}
+    values |= {"drive_compliance.J": inertia}
+    model = Model(Rig.thesis(), "journal", ["drive_compliance"], values)
+    force = model.predict(run)
+    assert np.all(np.abs(force[np.isfinite(force)]) < 30.0)
+    assert np.count_nonzero(np.isfinite(force)) > 0.9 * len(run)
+
+
 def test_elastic_belt_is_identified_without_a_delay() -> None:
     runs = [belt_drive(seed, 20, 1.0) for seed in range(3)]
     found = diagnose(RIG, runs, law="coulomb")

@@ -20,8 +20,8 @@
 //!
 //! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994). The
 //! integration method is the midpoint rule with an implicit solution for the set-valued force (a
-//! proximal step, after Moreau), which allows sticking without chattering. A step in which the
-//! journal stops is divided there.
+//! proximal step, after Moreau), which allows sticking without chattering. If the steps resolve the oscillation of
+//! the journal, a step in which it stops is divided there.
 
 use super::registry::named_effect;
 use super::{Effect, Info, Need, Resistance, Rig, Stage};
@@ -139,11 +139,15 @@ impl<T: Real> DriveCompliance<T> {
         let inverse_radius = T::ONE / rig.radius_m;
         let hold = arm * middle.level_n;
         let slope = arm * rig.radius_m * middle.slope_n_s_m;
-        let steps = libm::ceil(dt_s.value() / self.inner_step_s).clamp(1.0, MOST_INNER_STEPS);
+        let needed = libm::ceil(dt_s.value() / self.inner_step_s);
+        let steps = needed.clamp(1.0, MOST_INNER_STEPS);
         let inverse_steps = 1.0 / steps;
         let h = dt_s.times(inverse_steps);
         let half = h.times(0.5);
         let (k, c) = (self.stiffness_n_m_rad, self.damping_n_m_s_rad);
+        // Whether the steps resolve the oscillation of a journal without friction, and its decay.
+        let resolved =
+            needed <= MOST_INNER_STEPS && c.value() * h.value() <= self.inertia_kg_m2.value();
         // Sum of all coefficients of the midpoint speed.
         let inertia = self.inertia_kg_m2.times(2.0) / h;
         let inverse_drag = T::ONE / (inertia + k * half + c + slope);
@@ -156,6 +160,7 @@ impl<T: Real> DriveCompliance<T> {
         let from = state.angle_rad - state.encoder_rad;
         let mut ahead = from;
         let mut direction = T::ZERO;
+        let mut change_rad_s = T::ZERO;
         for i in 0..steps as u32 {
             let share = (f64::from(i) + 0.5) * inverse_steps;
             let pushed = first + line.times(share) - bend.times(sag(share));
@@ -163,21 +168,30 @@ impl<T: Real> DriveCompliance<T> {
             let before = state.speed_rad_s;
             direction = direction_from(before, pull, hold);
             if direction == T::ZERO {
+                change_rad_s = T::ZERO;
                 continue;
             }
             let speed = (inertia * before + pull - hold * direction) * inverse_drag;
             let after = speed + speed - before;
             if after.value() * direction.value() >= 0.0 {
                 ahead += speed * h;
+                change_rad_s = after - before;
                 state.speed_rad_s = after;
                 continue;
             }
-            // The journal stops within the step. For the remaining time it moves on from rest, or
-            // sticks.
+            // The journal stops within the step.
+            change_rad_s = -before;
+            state.speed_rad_s = T::ZERO;
+            if !resolved {
+                if speed.value() * direction.value() > 0.0 {
+                    ahead += speed * h;
+                }
+                continue;
+            }
+            // For the remaining time it moves on from rest, or sticks.
             let stopping = before / (before - after);
             let remaining = h - stopping * h;
             ahead += before * (stopping * h).times(0.5);
-            state.speed_rad_s = T::ZERO;
             direction = direction_from(T::ZERO, pull, hold);
             if direction != T::ZERO && remaining > T::ZERO {
                 let drag = self.inertia_kg_m2.times(2.0) / remaining;
@@ -205,9 +219,14 @@ impl<T: Real> DriveCompliance<T> {
             let slope = arm * rig.radius_m * end.slope_n_s_m;
             hold * direction + slope * state.speed_rad_s
         };
-        // By the equation of motion at the end of the step. The change of the speed would be the
-        // acceleration in its middle.
-        let acceleration_m_s2 = (torque - friction) / self.inertia_kg_m2 * rig.radius_m;
+        // By the equation of motion at the end of the step. The change of the speed is that in the
+        // middle of the last step, but remains bounded where the oscillation is not resolved.
+        let acceleration_rad_s2 = if resolved {
+            (torque - friction) / self.inertia_kg_m2
+        } else {
+            change_rad_s / h
+        };
+        let acceleration_m_s2 = acceleration_rad_s2 * rig.radius_m;
         (state.encoder_rad, state.encoder_m_s) = (to.angle_rad, to.velocity_m_s);
         let (measured_acceleration_m_s2, spring_inertia_n) = if rig.force_at_drive {
             let difference_m_s2 = acceleration_m_s2 - to.acceleration_m_s2;
